@@ -1,0 +1,42 @@
+"""Structure behind the link that moves by itself."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import jax.numpy as jnp
+import numpy as np
+
+from ..mechanics import AbstractEffect, Instant
+from ..parameters import Scalar, param
+
+
+class FlexibleLink(AbstractEffect):
+    r"""A second inertia behind the link: :math:`J_2 \ddot y_2 = -T,\ T = k_2 (y_2 - y) + c_2 (\dot y_2 - \dot y)`.
+
+    The two states are its angle and speed relative to the link's, seen from the ground: :math:`y_2` and
+    :math:`\dot y_2`. At :math:`J_2 = 0` with :math:`k_2 / J_2` kept the effect vanishes.
+    """
+
+    J2: Scalar = param(unit="kg m^2", null=0.0, lower=0.0, scale=0.1)
+    k2: Scalar = param(unit="N m/rad", default=0.0, lower=0.0, scale=1000.0)
+    c2: Scalar = param(unit="N m s/rad", default=0.0, lower=0.0, scale=1.0)
+    states: ClassVar[tuple[str, ...]] = ("y2", "dy2")
+    port: ClassVar[str] = "ground"
+
+    @classmethod
+    def guesses(cls, system: Any) -> list[AbstractEffect]:
+        # A tenth of the link's inertia on springs of a ladder of frequencies: the frequency is not seen at null.
+        small = 0.1 * float(system.inertia)
+        return [cls(small, small * w * w, 0.02 * small * w) for w in 2.0 * np.pi * np.geomspace(15.0, 60.0, 5)]
+
+    def torque(self, now: Instant) -> Scalar:
+        y2, dy2 = now.state
+        return self.k2 * (y2 - now.y) + self.c2 * (dy2 - now.dy)
+
+    def rate(self, now: Instant) -> tuple[Scalar, ...]:
+        _, dy2 = now.state
+        return dy2, -self.torque(now) / jnp.maximum(self.J2, 1e-9)
+
+    def start(self, now: Instant) -> tuple[Scalar, ...]:
+        return now.y, now.dy

@@ -1,0 +1,7 @@
+"""From records to parameters: windows, shooting, the arrow's linear algebra, intervals."""
+
+from .estimates import Estimate as Estimate
+from .fit import Fit as Fit
+from .fit import fit as fit
+from .fit import predict_record as predict_record
+from .score import Score as Score

@@ -1,0 +1,84 @@
+r"""Linear algebra of the arrow: block tridiagonal with a dense border, solved in time linear in the number of windows."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import jax.scipy.linalg as jsl
+import lineax as lx
+
+from .shooting import Blocks
+
+Array = Any
+
+
+class ArrowSolution(eqx.Module):
+    """Step for the local unknowns ``local`` (W, B) and parameters ``theta`` (q,), and ``schur`` (q, q).
+
+    ``schur`` is the information about the parameters with all local unknowns marginalised; its inverse is their
+    covariance when the blocks are those of J^T J with unit-variance residuals.
+    """
+
+    local: Array
+    theta: Array
+    schur: Array
+
+
+def solve(blocks: Blocks, damping: Array) -> ArrowSolution:
+    r"""Solve :math:`(H + \lambda\,\mathrm{diag} H)\,\Delta = -g` by elimination of the windows in order.
+
+    Parameters
+    ----------
+    blocks : normal equations by blocks (`Blocks`)
+    damping : Levenberg-Marquardt :math:`\lambda \ge 0`
+    """
+    count, size = blocks.slope.shape
+    q = blocks.corner.shape[0]
+    eye = jnp.eye(size)
+    diagonal = blocks.diagonal * (1.0 + damping * eye)
+    border = jnp.concatenate([blocks.border, blocks.slope[:, :, None]], axis=2)
+
+    def eliminate(carry: Any, block: Any) -> Any:
+        taken, taken_border = carry
+        own, below, edge = block
+        factor = jnp.linalg.cholesky(own - taken)
+        edge = edge - taken_border
+        right = jnp.concatenate([below.T, edge], axis=1)
+        half = jsl.solve_triangular(factor, right, lower=True)
+        half_below, half_edge = half[:, :size], half[:, size:]
+        carry = (half_below.T @ half_below, half_below.T @ half_edge)
+        return carry, (factor, half_below, half_edge)
+
+    start = (jnp.zeros((size, size)), jnp.zeros((size, q + 1)))
+    _, (factors, half_below, half_edge) = jax.lax.scan(eliminate, start, (diagonal, blocks.below, border))
+
+    inner = jnp.einsum("wbi,wbj->ij", half_edge, half_edge)
+    schur = blocks.corner - inner[:q, :q]
+    right = -(blocks.slope_theta - inner[:q, q])
+    if q:
+        damped = schur + damping * jnp.diag(jnp.diagonal(blocks.corner))
+        theta = _solve_scaled(damped, right)
+    else:
+        theta = jnp.zeros(0)
+
+    def back(following: Array, stored: Any) -> Any:
+        factor, below, edge = stored
+        right = -edge[:, q] - edge[:, :q] @ theta - below @ following
+        own = jsl.solve_triangular(factor.T, right, lower=False)
+        return own, own
+
+    _, local = jax.lax.scan(back, jnp.zeros(size), (factors, half_below, half_edge), reverse=True)
+    return ArrowSolution(local, theta, schur)
+
+
+def _solve_scaled(matrix: Array, right: Array) -> Array:
+    # Parameters that nothing determines leave a zero row; scaling and a whisper of ridge keep the step finite.
+    scale = jnp.sqrt(jnp.maximum(jnp.diagonal(matrix), 1e-300))
+    scaled = matrix / scale[:, None] / scale[None, :]
+    scaled = jnp.where(jnp.isfinite(scaled), scaled, 0.0) + 1e-13 * jnp.eye(scale.shape[0])
+    operator = lx.MatrixLinearOperator(scaled, lx.symmetric_tag)
+    solution = lx.linear_solve(operator, right / scale, lx.LU(), throw=False).value
+    return solution / scale

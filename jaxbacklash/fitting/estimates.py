@@ -1,0 +1,130 @@
+"""What is known about a parameter after the fit: value, standard error, interval, and in words whether it was found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy import stats
+
+from ..parameters import specs, unit_text, values
+from ..records import Record
+from ..system import System
+
+FOUND, ONE_SIDED, UNDETERMINED = "found", "one-sided", "not determined"
+NORMAL_95 = float(stats.norm.ppf(0.975))
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One parameter. ``value`` and the rest are None when it was not determined; ``why`` says why."""
+
+    name: str
+    value: float | None
+    stderr: float | None
+    unit: str
+    verdict: str = FOUND
+    why: str = ""
+    label: str = ""
+    profile95: tuple[float, float] | None = None
+
+    @property
+    def ci95(self) -> tuple[float, float] | None:
+        """95 % interval: from the profile likelihood where it was asked for, else value -+ 1.96 standard errors."""
+        if self.profile95 is not None:
+            return self.profile95
+        if self.value is None or self.stderr is None:
+            return None
+        return self.value - NORMAL_95 * self.stderr, self.value + NORMAL_95 * self.stderr
+
+    def as_json(self) -> dict[str, Any]:
+        interval = self.ci95
+        found: dict[str, Any] = {
+            "value": self.value,
+            "stderr": self.stderr,
+            "ci95": None if interval is None else list(interval),
+            "unit": self.unit,
+            "verdict": self.verdict,
+        }
+        if self.why:
+            found["why"] = self.why
+        return found
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """How often the record meets the edges of the play: shares of samples above and below, and the largest |z| [rad]."""
+
+    above: float
+    below: float
+    reach: float
+
+
+def contacts(record: Record, low: float, high: float) -> Contacts:
+    """Share of samples beyond each edge of the play, by the measured z (or y at a base at rest)."""
+    if "z" in record.channels:
+        z = record.channels["z"]
+    else:
+        z = record.channels["y"] - record.channels.get("x", 0.0)
+    return Contacts(float(np.mean(z > high)), float(np.mean(z < low)), float(np.max(np.abs(z))))
+
+
+def judge(
+    system: System,
+    free: Sequence[str],
+    stderr: dict[str, float],
+    records: Sequence[Record],
+    *,
+    per_inertia: bool,
+    translational: bool,
+) -> dict[str, Estimate]:
+    """Estimates with verdicts.
+
+    A stiffness that does not stand clear of its error, or a play that no sample leaves, was not determined; a play met on
+    one side only is one-sided: the record tells where that edge is, not how far away the other one lies.
+    """
+    described, present = specs(system), values(system)
+    length = "m" if translational else "rad"
+    found: dict[str, Estimate] = {}
+    reasons = _joint_reasons(system, stderr, records, length) if system.has_play else {}
+    for name in free:
+        spec, error = described[name], stderr[name]
+        unit = unit_text(spec.unit, translational=translational, per_inertia=per_inertia)
+        value = present[name]
+        verdict, why = reasons.get(name, (FOUND, ""))
+        if verdict == FOUND and not np.isfinite(error):
+            verdict, why = UNDETERMINED, "this record does not change with it"
+        elif verdict == FOUND and spec.positive and error > 0.5 * abs(value):
+            verdict, why = UNDETERMINED, "its standard error exceeds half of its value"
+        hidden = verdict != FOUND
+        finite = np.isfinite(error) and not hidden
+        found[name] = Estimate(
+            name, None if hidden else value, error if finite else None, unit, verdict, why, spec.label or name
+        )
+    return found
+
+
+def _joint_reasons(
+    system: System, stderr: dict[str, float], records: Sequence[Record], length: str
+) -> dict[str, tuple[str, str]]:
+    low, high = (float(e) for e in system.edges(0.0))
+    assert system.contact is not None
+    stiffness = float(system.contact.stiffness)
+    touch = [contacts(r, low, high) for r in records]
+    above, below = max(c.above for c in touch), max(c.below for c in touch)
+    reach = max(c.reach for c in touch)
+    weak = stiffness < 5.0 * stderr.get("stiffness", 0.0) or not np.isfinite(stderr.get("stiffness", 0.0))
+    if weak or (above == 0.0 and below == 0.0):
+        why = f"z never leaves the play: |z| stays below {reach:.4g} {length} and no contact shows"
+        return {"backlash": (UNDETERMINED, why), "stiffness": (UNDETERMINED, why)}
+    few = 2.0 / min(r.samples for r in records)
+    if above <= few or below <= few:
+        side, edge = ("upper", high) if above > below else ("lower", low)
+        why = (
+            f"only the {side} edge is met, at z = {edge:.5g} {length}; the record does not show where the other edge "
+            "lies, so the total play is open"
+        )
+        return {"backlash": (ONE_SIDED, why)}
+    return {}

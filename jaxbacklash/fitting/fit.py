@@ -1,0 +1,237 @@
+"""The fit: from records and a model to parameters with intervals, and how well the model predicts."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+
+from ..errors import NoAnswer
+from ..mechanics import AbstractEffect
+from ..parameters import values, with_values
+from ..precision import require_double_precision
+from ..records import Record
+from ..system import System
+from .estimates import Estimate, judge
+from .equation_error import Start
+from .levenberg import ArrowLevenbergMarquardt, minimise
+from .score import Score, score
+from .setup import base_system, first_guess, free_names, make_problem
+from .shooting import Problem, Unknowns
+from .windows import Layout, Windows, cut
+
+SHOOTING_WINDOW = 0.1
+"""Length of a shooting window [s]. Windows of 0.1 s converge from wild starts; 0.25 s and longer mostly do not."""
+SCORE_WINDOW = 0.2
+"""Length of the windows whose prediction error is quoted [s]."""
+ADEQUATE = 1.25
+"""Windows are tied into one trajectory only where the untied misfit is below this many noises: else the model is wrong."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted model.
+
+    Attributes: ``system`` with the fitted values; ``parameters`` the free ones, by name; ``scores`` one per record;
+    ``heldout`` the score of a held-out record; ``noise`` and ``input_noise`` per record; ``covariance`` (q, q) in the order of
+    ``free``; ``agreeing``, ``tried`` starts that reached the best minimum; ``tied`` True when the windows were tied;
+    ``cost`` half the sum of squares; ``start`` the equation-error estimate it began from; ``seconds`` by stage.
+    """
+
+    system: System
+    free: tuple[str, ...]
+    parameters: dict[str, Estimate]
+    scores: tuple[Score, ...]
+    heldout: Score | None
+    records: tuple[Record, ...]
+    noise: tuple[float, ...]
+    input_noise: tuple[float, ...]
+    covariance: np.ndarray
+    agreeing: int
+    tried: int
+    tied: bool
+    cost: float
+    steps: int
+    start: Start | None
+    model: str
+    per_inertia: bool
+    translational: bool
+    seconds: dict[str, float] = field(default_factory=dict)
+    problem: Problem | None = field(default=None, repr=False)
+    unknowns: Unknowns | None = field(default=None, repr=False)
+
+    @property
+    def score(self) -> Score:
+        """The score of the first record."""
+        return self.scores[0]
+
+    @property
+    def adequate(self) -> bool:
+        """True when what the model leaves is noise: the median window within 15 % of it, and all windows within 50 %."""
+        return all(s.median < 1.15 and s.rms < 1.5 for s in self.scores)
+
+    def __str__(self) -> str:
+        from .print_fit import text
+
+        return text(self)
+
+
+def fit(
+    records: Record | Sequence[Record],
+    *,
+    model: str = "joint",
+    inertia: float | None = None,
+    effects: Sequence[AbstractEffect] = (),
+    system: System | None = None,
+    free: Sequence[str] | None = None,
+    heldout: Record | None = None,
+    window: float = SCORE_WINDOW,
+    starts: int = 4,
+    seed: int = 0,
+    translational: bool = False,
+) -> Fit:
+    """Fit a model to one or more records.
+
+    Parameters
+    ----------
+    records : records of one kind and rate; parameters are shared
+    model : ``"joint"``, ``"linear"`` or ``"free"``; ignored when ``system`` is given
+    inertia : J [kg m^2]; None: fitted to force-driven records, else values are per unit inertia
+    effects : effects added to the base model, at starting values
+    system : a system to start from instead of an estimate from the data
+    free : names of the free parameters; default all but the inertia and numerical settings
+    heldout : a record to predict with the fitted parameters frozen
+    window : length of the windows whose error is quoted [s]
+    starts : how many starting points are tried (the first is the equation-error estimate)
+    seed : seed of the further starting points
+    translational : units of a translating mass
+
+    Raises
+    ------
+    BadInput
+        Records that cannot carry the model.
+    NoAnswer
+        No start led to a finite minimum.
+    RuntimeError
+        JAX is in single precision.
+    """
+    require_double_precision("fit")
+    chosen = (records,) if isinstance(records, Record) else tuple(records)
+    clock = {"start": time.perf_counter()}
+    start: Start | None = None
+    if system is None:
+        system, names, start = base_system(chosen[0], model, inertia, effects)
+    else:
+        names = free_names(system)
+    names = tuple(free) if free is not None else names
+    windows, layout = cut(chosen, 0.5 * window if window < 2 * SHOOTING_WINDOW else SHOOTING_WINDOW)
+    group = max(1, round(window / (layout.length * layout.dt)))
+    clock["cut"] = time.perf_counter()
+
+    found = search(system, windows, names, starts=starts, seed=seed)
+    clock["search"] = time.perf_counter()
+    problem, unknowns = found.problem, found.unknowns
+    fitted = with_values(system, dict(zip(values(system), np.asarray(problem.parameters(unknowns.theta)))))
+
+    scored = [score(problem, unknowns, layout, group=group, record=i)[0] for i in range(len(chosen))]
+    held = predict_record(fitted, heldout, group=group)[0] if heldout is not None else None
+    clock["score"] = time.perf_counter()
+
+    excess = max(1.0, scored[0].rms**2) if not found.tied else 1.0
+    covariance = excess * found.covariance
+    stderr = dict(zip(names, np.sqrt(np.diag(covariance))))
+    per_inertia = inertia is None and chosen[0].kind != "force"
+    estimates = judge(fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational)
+    marks = list(clock.items())
+    return Fit(
+        fitted, names, estimates, tuple(scored), held, chosen, layout.noise, layout.input_noise, covariance,
+        found.agreeing, found.tried, found.tied, found.cost, found.steps, start, model, per_inertia, translational,
+        {name: at - before for (_, before), (name, at) in zip(marks, marks[1:])}, problem, unknowns,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Found:
+    """Where a search ended; ``covariance`` (q, q) in the parameters' own units."""
+
+    problem: Problem
+    unknowns: Unknowns
+    covariance: np.ndarray
+    cost: float
+    agreeing: int
+    tried: int
+    tied: bool
+    steps: int
+
+
+def search(system: System, windows: Windows, free: Sequence[str], *, starts: int, seed: int) -> Found:
+    """Minimise the misfit over free windows from several starts, then tie the best one's windows into one trajectory."""
+    problem = make_problem(system, windows, free)
+    guess = first_guess(problem)
+    solver = ArrowLevenbergMarquardt()
+    rng = np.random.default_rng(seed)
+    tried = []
+    for attempt in range(max(1, starts)):
+        begin = guess
+        if attempt:
+            # Values that must keep their sign move by up to a factor of 1.6; others by a little of their scale.
+            shift = rng.uniform(-0.4, 0.6, len(free)) * np.where(problem.shrink, 1.0, 0.3)
+            theta = jnp.clip(jnp.asarray(shift), problem.lower, problem.upper)
+            begin = eqx.tree_at(lambda u: u.theta, guess, theta)
+        solution = minimise(problem, begin, solver)
+        tried.append((float(solution.stats["state"].blocks.cost), attempt, solution))
+    tried = [entry for entry in tried if np.isfinite(entry[0])]
+    if not tried:
+        raise NoAnswer("no start led to a finite misfit: the record may hold something else than this model's motion")
+    cost, _, best = min(tried, key=lambda entry: entry[:2])
+    rows = float(jnp.sum(windows.weight > 0))
+    excess = max(1.0, 2.0 * cost / rows)
+    agreeing = sum(entry[0] - cost < 2.0 * excess for entry in tried)
+
+    tied = bool(np.sqrt(2.0 * cost / _freedom(best.value, windows)) < ADEQUATE)
+    steps = int(best.stats["state"].steps)
+    if tied:
+        joined = eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(1.0))
+        solution = minimise(joined, best.value, solver)
+        after = float(solution.stats["state"].blocks.cost)
+        # Tied windows may disagree where a chaotic record and a slightly wrong model part ways; then they stay apart.
+        tied = np.sqrt(2.0 * after / _freedom(solution.value, windows)) < ADEQUATE
+        if tied:
+            best, problem, cost = solution, joined, after
+            steps += int(solution.stats["state"].steps)
+    scale = np.asarray(jnp.sum(problem.directions, axis=0))
+    covariance = _inverse(np.asarray(best.stats["schur"])) * np.outer(scale, scale)
+    return Found(problem, best.value, covariance, cost, agreeing, len(tried), tied, steps)
+
+
+def predict_record(system: System, record: Record, *, group: int = 2) -> tuple[Score, Layout]:
+    """Score a system with frozen parameters on a record it may never have seen, window starts re-estimated."""
+    windows, layout = cut([record], SHOOTING_WINDOW)
+    # The number of free directions stays that of a joint's fit, so that the compiled program serves again.
+    problem = make_problem(system, windows, free_names(system))
+    found, _ = score(problem, first_guess(problem), layout, group=group)
+    return found, layout
+
+
+def _freedom(unknowns: Unknowns, windows: Windows) -> float:
+    samples = float(np.sum(np.asarray(windows.weight) > 0.0))
+    moving = float(np.sum(np.asarray(windows.x_weight) > 0.0))
+    used = float(np.sum(np.any(np.asarray(windows.weight) > 0.0, axis=1)))
+    return samples + moving - used * (windows.intervals + unknowns.starts.shape[0])
+
+
+def _inverse(schur: np.ndarray) -> np.ndarray:
+    scale = np.sqrt(np.maximum(np.diag(schur), 0.0))
+    alive = scale > 0.0
+    inverse = np.full(schur.shape, 0.0)
+    inverse[np.diag_indices_from(inverse)] = np.inf
+    if np.any(alive):
+        core = schur[np.ix_(alive, alive)] / np.outer(scale[alive], scale[alive])
+        inverse[np.ix_(alive, alive)] = np.linalg.pinv(core, rcond=1e-14, hermitian=True) / np.outer(
+            scale[alive], scale[alive]
+        )
+    return inverse

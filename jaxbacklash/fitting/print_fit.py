@@ -1,0 +1,88 @@
+"""A fit report that a person can read."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from .estimates import Estimate
+    from .fit import Fit
+
+
+def number(value: float, stderr: float | None) -> str:
+    """A value with as many digits as its standard error allows (two of the error)."""
+    if not stderr or not np.isfinite(stderr):
+        return f"{value:.6g}"
+    decimals = int(1 - np.floor(np.log10(stderr)))
+    if decimals >= 0 and abs(value) < 1e7:
+        return f"{value:.{decimals}f}"
+    return f"{value:.6g}"
+
+
+def line(estimate: Estimate) -> str:
+    """One parameter in words: value, error, interval, or why there is none."""
+    name = f"  {estimate.label:<24}"
+    if estimate.value is None:
+        return f"{name} {estimate.verdict}: {estimate.why}"
+    value = number(estimate.value, estimate.stderr)
+    if estimate.stderr is None:
+        return f"{name} {value} {estimate.unit}"
+    share = f"{100 * estimate.stderr / abs(estimate.value):.2g} %" if estimate.value else ""
+    text = f"{name} {value} +- {estimate.stderr:.2g} {estimate.unit} ({share})"
+    if estimate.unit == "rad" and abs(estimate.value) < 1.0:
+        text += f" = {np.degrees(estimate.value):.4g} deg"
+    return text
+
+
+def text(fit: Fit) -> str:
+    """The whole report."""
+    lines = []
+    for record, score, noise, moved in zip(fit.records, fit.scores, fit.noise, fit.input_noise):
+        lines.append(record.summary())
+        unit = "m" if fit.translational else "rad"
+        lines.append(f"  noise of {record.observed_name} {noise:.3g} {unit}" + (f", of x {moved:.3g} {unit}" if moved else ""))
+        lines.append(
+            f"  prediction error over windows: {score.rms:.3g} times the noise (median window {score.median:.3g})"
+        )
+    if fit.heldout is not None:
+        lines.append(f"  on the held-out record: {fit.heldout.rms:.3g} times the noise (median {fit.heldout.median:.3g})")
+    effects = ", ".join(sorted(fit.system.effects)) or "none"
+    lines.append(f"model: {fit.model}; effects added: {effects}")
+    if fit.per_inertia:
+        lines.append("no inertia was given: stiffness, damping and torques are per unit inertia")
+    lines += [line(estimate) for estimate in fit.parameters.values()]
+    lines += _correlations(fit)
+    how = "tied into one trajectory" if fit.tied else "each on its own"
+    lines.append(f"{fit.agreeing} of {fit.tried} starts reached this minimum; windows {how}; {fit.steps} steps")
+    lines.append(verdict_text(fit))
+    return "\n".join(lines)
+
+
+def _correlations(fit: Fit) -> list[str]:
+    deviation = np.sqrt(np.diag(fit.covariance))
+    lines = []
+    with np.errstate(invalid="ignore", divide="ignore"):
+        correlation = fit.covariance / np.outer(deviation, deviation)
+    for i in range(len(fit.free)):
+        for j in range(i):
+            if np.isfinite(correlation[i, j]) and abs(correlation[i, j]) > 0.9:
+                lines.append(f"  correlation of {fit.free[j]} and {fit.free[i]}: {correlation[i, j]:+.3f}")
+    return lines
+
+
+def verdict_text(fit: Fit) -> str:
+    """One or two sentences: does the model explain the record, and what could not be found?"""
+    worst = max(fit.scores, key=lambda score: score.median)
+    if fit.adequate:
+        sentence = f"The model explains the record to its noise (median window {worst.median:.2f} times the noise)."
+    else:
+        sentence = (
+            f"The model misses something: the median window is off by {worst.median:.3g} times the noise, all windows by "
+            f"{worst.rms:.3g}; intervals are widened by that misfit and hold only if the model is right."
+        )
+    missing = [e for e in fit.parameters.values() if e.value is None]
+    if missing:
+        sentence += " Not found: " + "; ".join(f"{e.label or e.name} ({e.why})" for e in missing) + "."
+    return sentence

@@ -1,0 +1,118 @@
+"""Windowed prediction error: how far a model, its parameters frozen, misses the record, in units of the noise.
+
+Each score window (0.2 s unless said otherwise) is simulated from its own estimated start. The residual is whitened by what noise
+alone would give: the noise of the measured channel, and the noise of the base motion carried through the model, by letting
+the base-motion spline move as far as its own samples allow. A perfect model scores 1.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+
+from .levenberg import ArrowLevenbergMarquardt, minimise
+from .shooting import Problem, Unknowns, residuals
+from .windows import Layout
+
+
+class Score(eqx.Module):
+    """The misfit of one record in units of the noise.
+
+    Attributes: ``rms`` over all windows; ``median`` window; ``window_rms`` (K,) per score window, NaN where too short;
+    ``window_times`` (K,) their start times [s]; ``t`` (N,), ``predicted`` (N,) measured channel as predicted, ``residual`` (N,)
+    measured minus predicted over the noise; ``starts`` (K, n).
+    """
+
+    rms: float
+    median: float
+    window_rms: np.ndarray
+    window_times: np.ndarray
+    t: np.ndarray
+    predicted: np.ndarray
+    residual: np.ndarray
+
+
+def frozen(problem: Problem, theta: Any) -> Problem:
+    """The same problem with its parameters fixed at ``theta`` (shapes unchanged, so nothing is compiled anew)."""
+    q = problem.directions.shape[1]
+    return eqx.tree_at(
+        lambda p: (p.base, p.directions, p.shrink),
+        problem,
+        (problem.parameters(theta), jnp.zeros_like(problem.directions), jnp.zeros(q, dtype=bool)),
+    )
+
+
+def score(problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 2, record: int = 0) -> tuple[Score, Unknowns]:
+    """Score the parameters of ``unknowns`` on all windows.
+
+    Parameters
+    ----------
+    problem : windows and system
+    unknowns : parameters to judge, and starts near the right ones
+    layout : where each record sits
+    group : shooting windows per score window
+    record : which record the score is reported for
+
+    Returns
+    -------
+    the score, and the unknowns with the window starts re-estimated
+    """
+    still = frozen(problem, unknowns.theta)
+    tie = np.asarray(problem.windows.tie).copy()
+    for first, count in zip(layout.first, layout.windows):
+        index = np.arange(count)
+        tie[first : first + count] *= (index % group) != group - 1
+    still = eqx.tree_at(lambda p: (p.windows.tie, p.tie), still, (jnp.asarray(tie), jnp.asarray(1.0)))
+    begin = Unknowns(jnp.zeros_like(unknowns.theta), unknowns.starts, unknowns.coefficients)
+    solution = minimise(still, begin, ArrowLevenbergMarquardt(atol=1e-2))
+    found = solution.value
+    predicted = solution.stats["state"].predicted
+    return _summarise(still, found, predicted, layout, group, record), Unknowns(
+        unknowns.theta, found.starts, found.coefficients
+    )
+
+
+def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout, group: int, record: int) -> Score:
+    w = problem.windows
+    motion, base, tie = (np.asarray(r) for r in residuals(problem, found, predicted))
+    at_rest = _spline_residual(w)
+    energy = np.sum(motion**2, axis=1) + np.sum(base**2 - at_rest**2, axis=1) + np.sum(tie**2, axis=1)
+    present = np.sum(np.asarray(w.weight) > 0.0, axis=1)
+
+    first, count = layout.first[record], layout.windows[record]
+    groups = -(-count // group)
+    sums = np.zeros((2, groups))
+    np.add.at(sums[0], np.arange(count) // group, energy[first : first + count])
+    np.add.at(sums[1], np.arange(count) // group, present[first : first + count])
+    states = found.starts.shape[0]
+    freedom = sums[1] - states
+    usable = freedom >= 4 * states
+    if not np.any(usable):
+        usable = freedom > 0
+    ratio = np.full(groups, np.nan)
+    ratio[usable] = np.sqrt(np.maximum(sums[0, usable], 0.0) / freedom[usable])
+    samples = layout.samples[record]
+    flat = lambda a: np.asarray(a)[first : first + count].ravel()[:samples]  # noqa: E731
+    t = float(np.asarray(w.t0)[first]) + layout.dt * np.arange(samples)
+    return Score(
+        rms=float(np.sqrt(np.sum(np.maximum(sums[0, usable], 0.0)) / np.sum(freedom[usable]))),
+        median=float(np.median(ratio[usable])),
+        window_rms=ratio,
+        window_times=t[0] + layout.dt * layout.length * group * np.arange(groups),
+        t=t,
+        predicted=flat(predicted.motion),
+        residual=-flat(motion),
+    )
+
+
+def _spline_residual(w: Any) -> np.ndarray:
+    if not w.intervals:
+        return np.asarray(w.x_weight)
+    own = np.asarray(w.coefficients)
+    following = np.concatenate([own[1:], np.zeros_like(own[:1])])
+    local = np.concatenate([own, following[:, : w.basis.shape[2] - w.intervals]], axis=1)
+    base = local @ np.asarray(w.basis)[0, : -1 : w.every].T
+    return (base - np.asarray(w.x)) * np.asarray(w.x_weight)

@@ -1,0 +1,129 @@
+"""From a record and a wish to a problem: which system, where it starts, which of its parameters are free."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import jax.numpy as jnp
+import numpy as np
+
+from ..effects import Contact, Damper, Spring
+from ..errors import BadInput
+from ..mechanics import AbstractEffect, Drive, catalogue
+from ..parameters import ravel, specs, values
+from ..records import Record
+from ..system import System
+from .equation_error import Start, estimate
+from .shooting import Problem, Unknowns
+from .windows import Windows
+
+MODELS = ("joint", "linear", "free")
+
+
+def base_system(
+    record: Record, model: str, inertia: float | None, effects: Sequence[AbstractEffect] = ()
+) -> tuple[System, tuple[str, ...], Start]:
+    """A base model with starting values from the record, and the names of its free parameters.
+
+    Parameters
+    ----------
+    record : the record to start from
+    model : ``"joint"``, ``"linear"`` (no play) or ``"free"`` (no spring)
+    inertia : J [kg m^2]; None fits it to a record with a force, and takes 1 (values per unit inertia) otherwise
+    effects : added at their starting values
+
+    Raises
+    ------
+    BadInput
+        An unknown model, or a record that cannot carry it.
+    """
+    if model not in MODELS:
+        raise BadInput(f"--model {model}: not a model; choose {', '.join(MODELS)} or a model file ending in .toml")
+    if record.kind == "transmitted":
+        raise BadInput(
+            f"{record.path}: has the base motion x and the transmitted torque T but no motion of the link; "
+            "wanted z or y beside x to fit a joint"
+        )
+    if inertia is not None and not (np.isfinite(inertia) and inertia > 0):
+        raise BadInput(f"--inertia {inertia:g}: wanted a positive number of kg m^2 (kg for a translating mass)")
+    known = inertia
+    if inertia is None and record.kind != "force":
+        known = 1.0
+    start = estimate(record, inertia=known, play=model == "joint", spring=model != "free")
+    contact: Contact | Spring | None = None
+    if model == "joint":
+        contact = Contact(start.backlash, start.stiffness)
+    elif model == "linear":
+        contact = Spring(start.stiffness)
+    system = System(start.inertia, contact, Damper(start.damping), observed=record.observed_name)
+    free = () if known is not None else ("inertia",)
+    return system.with_effects(*effects), free + free_names(system.with_effects(*effects)), start
+
+
+def free_names(system: System) -> tuple[str, ...]:
+    """All parameters that a fit may change: everything but the inertia and numerical settings."""
+    return tuple(name for name, spec in specs(system).items() if not spec.fixed and name != "inertia")
+
+
+def effects_by_name(names: Sequence[str], system: System) -> list[AbstractEffect]:
+    """Effects at their starting values from canonical names.
+
+    Raises
+    ------
+    BadInput
+        A name that is not in the catalogue.
+    """
+    known = catalogue()
+    unknown = [name for name in names if name not in known]
+    if unknown:
+        raise BadInput(f"--effects {unknown[0]}: no such effect; known are {', '.join(known)}")
+    return [known[name].guesses(system)[0] for name in names]
+
+
+def make_problem(system: System, windows: Windows, free: Sequence[str], *, tie: float = 0.0) -> Problem:
+    """The shooting problem with the named parameters free, in units of their present size."""
+    described, present = specs(system), values(system)
+    names = list(described)
+    base = ravel(system)
+    directions = np.zeros((base.size, len(free)))
+    lower, upper = np.empty(len(free)), np.empty(len(free))
+    for j, name in enumerate(free):
+        spec = described[name]
+        scale = abs(present[name]) or spec.scale or 1.0
+        directions[names.index(name), j] = scale
+        lower[j] = (spec.lower - present[name]) / scale
+        upper[j] = (spec.upper - present[name]) / scale
+    shrink = np.array([described[name].positive and present[name] > 0 for name in free], dtype=bool)
+    return Problem(
+        windows,
+        system,
+        jnp.asarray(base),
+        jnp.asarray(directions),
+        jnp.asarray(lower),
+        jnp.asarray(upper),
+        jnp.asarray(shrink),
+        jnp.asarray(float(tie)),
+    )
+
+
+def first_guess(problem: Problem) -> Unknowns:
+    """Starts from the smoothed data, the base motion from its spline, parameters as they are."""
+    w, system = problem.windows, problem.system
+    y, dy = jnp.asarray(w.starts)
+    hidden = len(system.state_names) - 2
+    if hidden:
+        z, dz = _relative(w, y, dy)
+        full = system.rest(jnp.asarray(w.t0), y, dy, Drive(y - z, dy - dz, 0.0 * y))
+        starts = jnp.stack([jnp.broadcast_to(s, y.shape) for s in full])
+    else:
+        starts = jnp.stack([y, dy])
+    return Unknowns(jnp.zeros(problem.directions.shape[1]), starts, jnp.asarray(w.coefficients))
+
+
+def _relative(w: Windows, y: jnp.ndarray, dy: jnp.ndarray) -> tuple[jnp.ndarray, jnp.ndarray]:
+    if not w.intervals:
+        return y, dy
+    own = jnp.asarray(w.coefficients)
+    following = jnp.concatenate([own[1:], jnp.zeros_like(own[:1])])
+    local = jnp.concatenate([own, following[:, : w.basis.shape[2] - w.intervals]], axis=1)
+    return y - local @ w.basis[0, 0], dy - local @ w.basis[1, 0]

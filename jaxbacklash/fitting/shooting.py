@@ -1,0 +1,256 @@
+r"""Multiple shooting: the misfit of all windows side by side, and its derivatives in blocks.
+
+Unknowns: the parameters :math:`\theta` that are free (few), and per window a start s (state of the link) and the m
+coefficients c of the base-motion spline. Misfit, all in units of the noise:
+
+* measured minus predicted motion, window by window;
+* measured base motion minus the spline, so that the noise in x is carried through the model instead of ignored;
+* end of a window minus start of the next, where they are tied.
+
+Minimising over s and c is what whitening the residual with both noises amounts to, to first order; it also holds beyond it.
+Window w meets only its own unknowns, the first few of window w + 1, and the parameters: the normal equations form a block
+tridiagonal matrix with a border (an arrow), and everything costs in proportion to the length of the record.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+
+from ..excitation import Panelled
+from ..parameters import unravel
+from ..signals import DEGREE
+from ..solvers.substeps import run_panels
+from ..system import System
+from .windows import Windows
+
+Array = Any
+
+
+class Unknowns(eqx.Module):
+    """``theta`` (q,) free parameters in units of their scale; ``starts`` (n, W); ``coefficients`` (W, m)."""
+
+    theta: Array
+    starts: Array
+    coefficients: Array
+
+
+class Problem(eqx.Module):
+    """Windows, a system, and which of its parameters are free.
+
+    ``base`` (p,) all parameter values; ``directions`` (p, q) how they move with the free ones (column j: scale of free
+    parameter j at its place); ``lower``, ``upper`` (q,) bounds in the same units; ``shrink`` (q,) True where a value must
+    keep its sign, so that no step may take it below a third or above three times; ``tie`` overall weight of the ties.
+    """
+
+    windows: Windows
+    system: System
+    base: Array
+    directions: Array
+    lower: Array
+    upper: Array
+    shrink: Array
+    tie: Array
+
+    def parameters(self, theta: Array) -> Array:
+        """All parameter values, shape (p,)."""
+        return self.base + self.directions @ theta
+
+
+class Blocks(eqx.Module):
+    """Normal equations J^T J and gradient J^T r by blocks; B = n + m unknowns a window.
+
+    ``diagonal`` (W, B, B); ``below`` (W, B, B) couples window w + 1 (rows) to window w (columns); ``border`` (W, B, q);
+    ``corner`` (q, q); ``slope`` (W, B) and ``slope_theta`` (q,) gradients; ``cost`` half the sum of squares.
+    """
+
+    diagonal: Array
+    below: Array
+    border: Array
+    corner: Array
+    slope: Array
+    slope_theta: Array
+    cost: Array
+
+
+class Prediction(eqx.Module):
+    """What one window predicts: ``motion`` (M,) measured channel, ``base`` (M,) spline at the samples, ``end`` (n,)."""
+
+    motion: Array
+    base: Array
+    end: Array
+
+
+def predict(problem: Problem, theta: Array, start: Array, local: Array, t0: Array, force: Array) -> Prediction:
+    """Simulate one window.
+
+    Parameters
+    ----------
+    theta : (q,) free parameters
+    start : (n,) state at the first sample
+    local : (m + 5,) spline coefficients, the last five shared with the next window
+    t0 : start time [s]
+    force : (P+1,) force at panel edges
+    """
+    w = problem.windows
+    system = unravel(problem.system, problem.parameters(theta))
+    x, dx = _base_motion(w, system.lag(), local)
+    drive = Panelled(t0, w.panel, x, dx, force)
+    state = tuple(start[i] for i in range(start.shape[0]))
+    end, states = run_panels(
+        system, t0, state, drive.grid(t0, w.panel, x.shape[0] - 1), w.panel, w.every, system.has_play
+    )
+    at = drive.grid(t0, w.panel, 0)
+    samples = jax.tree.map(lambda u: u[: -1 : w.every], at)
+    times = t0 + w.panel * w.every * jnp.arange(w.samples)
+    motion = jax.vmap(system.output)(times, states, samples)
+    if w.intervals:
+        base = w.basis[0, : -1 : w.every] @ local
+    else:
+        base = jnp.zeros((0,))
+    return Prediction(motion, base, jnp.stack(end))
+
+
+def _base_motion(w: Windows, lag: Array | None, local: Array) -> tuple[Array, Array]:
+    if not w.intervals:
+        zero = jnp.zeros(w.basis.shape[1])
+        return zero, zero
+    if lag is None:
+        return w.basis[0] @ local, w.basis[1] @ local
+    # The measured channel lags: it shows the motion that an equally delayed base would have caused. The Taylor series
+    # of a quintic ends after six terms, so it is exact within a knot interval.
+    x = dx = 0.0
+    factor: Any = 1.0
+    for order in range(DEGREE + 1):
+        x = x + factor * (w.basis[order] @ local)
+        if order < DEGREE:
+            dx = dx + factor * (w.basis[order + 1] @ local)
+        factor = -factor * lag / (order + 1)
+    return x, dx
+
+
+def _local(coefficients: Array) -> Array:
+    """Own coefficients and the first five of the next window, shape (W, m + 5)."""
+    if coefficients.shape[1] == 0:
+        return coefficients
+    following = jnp.concatenate([coefficients[1:], jnp.zeros_like(coefficients[:1])])
+    return jnp.concatenate([coefficients, following[:, :DEGREE]], axis=1)
+
+
+def predictions(problem: Problem, unknowns: Unknowns) -> Prediction:
+    """Predictions of all windows, stacked on the leading axis."""
+    w = problem.windows
+    one = lambda s, c, t0, f: predict(problem, unknowns.theta, s, c, t0, f)  # noqa: E731
+    return jax.vmap(one, in_axes=(1, 0, 0, 0))(unknowns.starts, _local(unknowns.coefficients), w.t0, w.force)
+
+
+def residuals(problem: Problem, unknowns: Unknowns, predicted: Prediction | None = None) -> tuple[Array, Array, Array]:
+    """Motion (W, M), base motion (W, M or 0) and tie (W, n) residuals in units of the noise."""
+    w = problem.windows
+    p = predictions(problem, unknowns) if predicted is None else predicted
+    motion = (p.motion - w.measured) * w.weight
+    base = (p.base - w.x) * w.x_weight
+    following = jnp.concatenate([unknowns.starts[:, 1:], unknowns.starts[:, :1]], axis=1).T
+    tie = (p.end - following) * _tie_weight(problem, unknowns)
+    return motion, base, tie
+
+
+def _tie_weight(problem: Problem, unknowns: Unknowns) -> Array:
+    w = problem.windows
+    extra = unknowns.starts.shape[0] - 2
+    # Internal states have no common scale; a loose tie is enough for what they carry from window to window.
+    drop = jnp.concatenate([w.drop, jnp.full(extra, w.drop[1])])
+    return problem.tie * w.tie[:, None] * drop
+
+
+def linearise(problem: Problem, unknowns: Unknowns) -> tuple[Blocks, Prediction]:
+    """Residuals and the blocks of the normal equations at a point.
+
+    Tangents are pushed through each window in forward mode, one for each of its n + m + 5 unknowns and q parameters.
+    """
+    w = problem.windows
+    n, q, m = unknowns.starts.shape[0], unknowns.theta.shape[0], w.intervals
+    local = _local(unknowns.coefficients)
+    free = local.shape[1]
+    seeds = jnp.eye(n + free + q)
+
+    def one(s: Array, c: Array, t0: Array, f: Array) -> tuple[Prediction, Prediction]:
+        run = lambda s, c, th: predict(problem, th, s, c, t0, f)  # noqa: E731
+        primal = run(s, c, unknowns.theta)
+        push = lambda e: jax.jvp(  # noqa: E731
+            run, (s, c, unknowns.theta), (e[:n], e[n : n + free], e[n + free :])
+        )[1]
+        return primal, jax.vmap(push)(seeds)
+
+    predicted, tangents = jax.vmap(one, in_axes=(1, 0, 0, 0))(unknowns.starts, local, w.t0, w.force)
+    motion, base, tie = residuals(problem, unknowns, predicted)
+    tie_weight = _tie_weight(problem, unknowns)
+    rows = jnp.concatenate(
+        [
+            tangents.motion * w.weight[:, None, :],
+            tangents.base * w.x_weight[:, None, :],
+            tangents.end * tie_weight[:, None, :],
+        ],
+        axis=2,
+    )
+    right = jnp.concatenate([motion, base, tie], axis=1)
+    gram = jnp.einsum("wir,wjr->wij", rows, rows)
+    slope = jnp.einsum("wir,wr->wi", rows, right)
+    cost = 0.5 * jnp.sum(right**2)
+    blocks = _assemble(gram, slope, rows[:, :, -n:], tie, tie_weight, n, m, q, cost)
+    return _ridge(problem, unknowns, blocks, n), predicted
+
+
+def _assemble(
+    gram: Array, slope: Array, end_rows: Array, tie: Array, tie_weight: Array, n: int, m: int, q: int, cost: Array
+) -> Blocks:
+    size, own, count = n + m, slice(0, n + m), gram.shape[0]
+    shared = slice(n + m, gram.shape[1] - q)
+    theta = slice(gram.shape[1] - q, gram.shape[1])
+    k = shared.stop - shared.start
+    # Unknowns of window w + 1 as window w sees them: its start through the tie, its first spline coefficients.
+    place = slice(n, n + k)
+    diagonal = gram[:, own, own]
+    border = gram[:, own, theta]
+    gradient = slope[:, own]
+
+    carried = jnp.zeros((count, size, size)).at[:, place, place].set(gram[:, shared, shared])
+    carried = carried.at[:, jnp.arange(n), jnp.arange(n)].add(tie_weight**2)
+    weighted = -tie_weight[:, :, None] * jnp.swapaxes(end_rows, 1, 2)  # (W, n, unknowns): start of w + 1 against window w
+    cross = weighted[:, :, shared]
+    carried = carried.at[:, :n, place].add(cross).at[:, place, :n].add(jnp.swapaxes(cross, 1, 2))
+    below = jnp.zeros((count, size, size)).at[:, place, :].set(gram[:, shared, own])
+    below = below.at[:, :n, :].add(weighted[:, :, own])
+    border_next = jnp.zeros((count, size, q)).at[:, place, :].set(gram[:, shared, theta])
+    border_next = border_next.at[:, :n, :].add(weighted[:, :, theta])
+    slope_next = jnp.zeros((count, size)).at[:, place].set(slope[:, shared])
+    slope_next = slope_next.at[:, :n].add(-tie_weight * tie)
+
+    shift = lambda a: jnp.concatenate([jnp.zeros_like(a[:1]), a[:-1]])  # noqa: E731
+    return Blocks(
+        diagonal + shift(carried),
+        below,
+        border + shift(border_next),
+        jnp.sum(gram[:, theta, theta], axis=0),
+        gradient + shift(slope_next),
+        jnp.sum(slope[:, theta], axis=0),
+        cost,
+    )
+
+
+def _ridge(problem: Problem, unknowns: Unknowns, blocks: Blocks, n: int) -> Blocks:
+    # Coefficients that hardly touch a sample (the end of a record, empty windows) are held by a whisper of a prior at
+    # the smoothing spline; a thousandth of the weight of one sample changes no estimate.
+    w = problem.windows
+    level = 1e-6 * jnp.max(w.x_weight, initial=0.0) ** 2
+    change = unknowns.coefficients - w.coefficients
+    slope = blocks.slope.at[:, n:].add(level * change)
+    size = blocks.diagonal.shape[1]
+    diagonal = blocks.diagonal.at[:, jnp.arange(n, size), jnp.arange(n, size)].add(level)
+    bare = jnp.diagonal(diagonal, axis1=1, axis2=2) == 0.0
+    diagonal = diagonal + jnp.where(bare, 1.0, 0.0)[:, :, None] * jnp.eye(size)
+    cost = blocks.cost + 0.5 * level * jnp.sum(change**2)
+    return Blocks(diagonal, blocks.below, blocks.border, blocks.corner, slope, blocks.slope_theta, cost)

@@ -1,0 +1,207 @@
+"""A record cut into shooting windows, as arrays of fixed shapes.
+
+Window w covers samples w M ... (w+1) M - 1 and ends on the first sample of the next. All windows share one basis for the
+base motion: a quintic spline whose knots divide the window, so that window w needs its own m coefficients and the first five
+of window w + 1. Records are laid one behind the other with an empty window after each, which holds the trailing
+coefficients; the number of windows is rounded up to a bucket, so that another record length does not compile anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import equinox as eqx
+import numpy as np
+from scipy.interpolate import BSpline
+
+from ..errors import BadInput
+from ..records import Record
+from ..signals import DEGREE, choose_intervals, fit_spline, knots, noise_level
+
+Array = Any
+LONGEST_PANEL = 2.0e-3
+"""Longest integration panel [s]; a panel is two Runge-Kutta steps."""
+
+
+class Windows(eqx.Module):
+    """Arrays of W windows with M samples and P panels each, and m spline coefficients per window (m = 0: no base motion).
+
+    ``t0`` (W,) start times [s]; ``measured`` (W, M); ``weight`` (W, M), 1/noise or 0 where there is no sample;
+    ``tie`` (W,), 1 where the window runs on into the next; ``x`` (W, M) measured base motion, ``x_weight`` (W, M);
+    ``force`` (W, P+1) at panel edges; ``coefficients`` (W, m) start of the spline; ``basis`` (6, P+1, m+5)
+    the splines and their derivatives at panel edges; ``starts`` (2, W) position and speed of the link from the smoothed data;
+    ``drop`` (2,) how sharply ends tie to starts [1/rad, s/rad].
+    """
+
+    t0: Array
+    measured: Array
+    weight: Array
+    tie: Array
+    x: Array
+    x_weight: Array
+    force: Array
+    coefficients: Array
+    basis: Array
+    starts: Array
+    drop: Array
+    panel: Array
+    every: int = eqx.field(static=True)
+
+    @property
+    def count(self) -> int:
+        return self.measured.shape[0]
+
+    @property
+    def samples(self) -> int:
+        return self.measured.shape[1]
+
+    @property
+    def intervals(self) -> int:
+        return self.coefficients.shape[1]
+
+
+class Layout(eqx.Module):
+    """Where each record sits among the windows, and what its noise is; plain numbers for reports."""
+
+    first: tuple[int, ...] = eqx.field(static=True)
+    windows: tuple[int, ...] = eqx.field(static=True)
+    samples: tuple[int, ...] = eqx.field(static=True)
+    noise: tuple[float, ...] = eqx.field(static=True)
+    input_noise: tuple[float, ...] = eqx.field(static=True)
+    dt: float = eqx.field(static=True)
+    length: int = eqx.field(static=True)
+
+
+def bucket(count: int) -> int:
+    """The next of a ladder of sizes a quarter apart: 16, 20, 25, 32, 40, ..."""
+    size = 16.0
+    while int(size) < count:
+        size *= 1.25
+    return int(size)
+
+
+def cut(records: Sequence[Record], window: float, *, longest_panel: float = LONGEST_PANEL) -> tuple[Windows, Layout]:
+    """Cut one or more records of the same rate and kind into shooting windows.
+
+    Parameters
+    ----------
+    records : records with the same channels and sample spacing
+    window : wished length of a window [s]; rounded to whole samples, at least 8
+    longest_panel : longest integration panel [s]
+
+    Raises
+    ------
+    BadInput
+        Records of different kinds or rates.
+    """
+    lead = records[0]
+    for other in records[1:]:
+        if other.kind != lead.kind or other.observed_name != lead.observed_name:
+            raise BadInput(f"{other.path}: has channels of a {other.kind} record, {lead.path} of a {lead.kind} record; fit them apart")
+        if abs(other.dt - lead.dt) > 1e-6 * lead.dt:
+            raise BadInput(
+                f"{other.path}: sampled at {other.rate_hz:g} Hz, {lead.path} at {lead.rate_hz:g} Hz; "
+                f"give --resample {lead.rate_hz:g} to bring them to one rate"
+            )
+    dt = lead.dt
+    length = max(8, round(window / dt))
+    every = max(1, int(np.ceil(dt / longest_panel - 1e-9)))
+    intervals = 0
+    if "x" in lead.channels:
+        intervals = max(choose_intervals(r.t, r.channels["x"], length * dt) for r in records)
+        intervals = -(-intervals // 4) * 4  # a step of four keeps the number of compiled shapes small
+    parts = [_cut_one(r, length, every, intervals) for r in records]
+    total = bucket(sum(p["measured"].shape[0] for p in parts))
+    stacked: dict[str, np.ndarray] = {}
+    for key in parts[0]:
+        if key in ("noise", "input_noise"):
+            continue
+        joined = np.concatenate([p[key] for p in parts])
+        stacked[key] = np.pad(joined, [(0, total - joined.shape[0])] + [(0, 0)] * (joined.ndim - 1))
+    counts = [p["measured"].shape[0] for p in parts]
+    noise = tuple(float(p["noise"]) for p in parts)
+    drop = 50.0 / np.mean(noise) * np.array([1.0, 0.02])
+    starts = np.ascontiguousarray(stacked.pop("starts").T)
+    panel = dt / every
+    windows = Windows(
+        basis=_basis(length, every, intervals, panel), drop=drop, panel=np.asarray(panel), every=every, starts=starts, **stacked
+    )
+    layout = Layout(
+        first=tuple(int(v) for v in np.cumsum([0, *counts[:-1]])),
+        windows=tuple(c - 1 for c in counts),
+        samples=tuple(r.samples for r in records),
+        noise=noise,
+        input_noise=tuple(float(p["input_noise"]) for p in parts),
+        dt=dt,
+        length=length,
+    )
+    return windows, layout
+
+
+def _basis(length: int, every: int, intervals: int, panel: float) -> np.ndarray:
+    edges = panel * np.arange(length * every + 1)
+    if intervals == 0:
+        return np.zeros((DEGREE + 1, edges.size, 0))
+    spacing = edges[-1] / intervals
+    count = intervals + DEGREE
+    splines = BSpline(knots(0.0, spacing, count), np.eye(count), DEGREE)
+    # The last edge belongs to the next window's first interval; just inside it the value is the same.
+    inside = np.minimum(edges, edges[-1] * (1.0 - 1e-12))
+    return np.stack([splines(inside, nu=order) for order in range(DEGREE + 1)])
+
+
+def _cut_one(record: Record, length: int, every: int, intervals: int) -> dict[str, Any]:
+    dt, samples = record.dt, record.samples
+    count = -(-samples // length)
+    rows = count + 1
+    observed = record.channels[record.observed_name]
+    noise = noise_level(record.t, observed)
+    t0 = record.t[0] + length * dt * np.arange(rows)
+    weight = _rows(np.full(samples, 1.0 / noise), rows, length)
+    part: dict[str, Any] = {
+        "t0": t0,
+        "measured": _rows(observed, rows, length),
+        "weight": weight,
+        "tie": np.concatenate([np.ones(count - 1), np.zeros(2)]),
+        "noise": noise,
+        "input_noise": 0.0,
+    }
+    motion = np.zeros(samples)
+    part["x"] = part["x_weight"] = np.zeros((rows, length if intervals else 0))
+    part["coefficients"] = np.zeros((rows, intervals))
+    if intervals:
+        fitted = fit_spline(record.t, record.channels["x"], record.t[0], length * dt / intervals)
+        part["x"] = _rows(record.channels["x"], rows, length)
+        part["x_weight"] = _rows(np.full(samples, 1.0 / fitted.noise), rows, length)
+        part["coefficients"] = _rows(fitted.coefficients, rows, intervals)
+        part["input_noise"] = fitted.noise
+        motion = fitted(record.t)
+    force = record.channels.get("F", np.zeros(samples))
+    part["force"] = _force_edges(force, rows, length, every)
+    part["starts"] = _starts(record, motion, observed, length, t0)
+    return part
+
+
+def _rows(values: np.ndarray, rows: int, length: int) -> np.ndarray:
+    padded = np.zeros(rows * length)
+    n = min(values.size, padded.size)
+    padded[:n] = values[:n]
+    return padded.reshape(rows, length)
+
+
+def _force_edges(force: np.ndarray, rows: int, length: int, every: int) -> np.ndarray:
+    # Straight lines between samples: a measured force may jump, and a curve through a jump overshoots.
+    values = np.interp(np.arange(rows * length * every + 1) / every, np.arange(force.size), force)
+    return values[(length * every * np.arange(rows))[:, None] + np.arange(length * every + 1)]
+
+
+def _starts(record: Record, motion: np.ndarray, observed: np.ndarray, length: int, t0: np.ndarray) -> np.ndarray:
+    if record.observed_name == "T":
+        link = motion
+    else:
+        link = observed + motion if record.observed_name == "z" else observed
+    window = length * record.dt
+    smooth = fit_spline(record.t, link, record.t[0], window / choose_intervals(record.t, link, window))
+    inside = np.clip(t0, record.t[0], record.t[-1])
+    return np.stack([smooth(inside), smooth(inside, 1)], axis=1)

@@ -1,0 +1,136 @@
+r"""The contract between a physical effect and the system it acts in. Start reading here.
+
+One link, one joint with play. The link's absolute motion is :math:`y`, the base motion :math:`x` is prescribed, the
+joint feels :math:`z = y - x`. Every effect adds a torque to
+
+.. math:: J \ddot y = F(t) + \sum_k \tau_k(t, y, \dot y, x, \dot x, s_k), \qquad \dot s_k = \mathrm{rate}_k(\ldots)
+
+or changes the play itself, or how the motion is measured. An effect overrides only what it changes.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar
+
+import equinox as eqx
+import jax.numpy as jnp
+
+from .parameters import Scalar
+
+
+class Drive(eqx.Module):
+    """What drives the system at one moment: base motion ``x`` [rad], its rate ``dx``, and ``force`` on the link [N m].
+
+    ``dforce`` is the rate of the force where it is known; without it the force is a straight line between panel edges.
+    """
+
+    x: Scalar = 0.0
+    dx: Scalar = 0.0
+    force: Scalar = 0.0
+    dforce: Scalar | None = None
+
+
+@dataclass(frozen=True)
+class Play:
+    """The free play at one moment: its total size and the middle of it, both in rad."""
+
+    backlash: Scalar
+    centre: Scalar = 0.0
+
+
+@dataclass(frozen=True)
+class Instant:
+    """What an effect can see at one moment.
+
+    Attributes: time ``t`` [s]; absolute motion ``y``, ``dy`` of the link, base motion ``x``, ``dx``, relative motion
+    ``z``, ``dz`` [rad, rad/s]; ``deflection`` of the contact beyond the play [rad] and ``contact``, 1 in contact and
+    0 in the play (between the two only inside a smoothed corner); the joint's ``stiffness`` [N m/rad], the link's
+    ``inertia`` [kg m^2]; ``state``, the effect's own internal states, in the order of its ``states``.
+    """
+
+    t: Scalar
+    y: Scalar
+    dy: Scalar
+    x: Scalar
+    dx: Scalar
+    z: Scalar
+    dz: Scalar
+    deflection: Scalar
+    contact: Scalar
+    stiffness: Scalar
+    inertia: Scalar
+    state: tuple[Scalar, ...] = ()
+
+    def seen_by(self, state: tuple[Scalar, ...]) -> Instant:
+        """The same moment with one effect's internal states filled in."""
+        return replace(self, state=state)
+
+
+class AbstractEffect(eqx.Module):
+    """A physical effect: a law with parameters, neutral in everything it does not override.
+
+    Class attributes: ``states`` names of internal states; ``port`` where the torque acts, ``"joint"`` (between link and
+    base, so it is part of the transmitted torque) or ``"ground"``; ``family`` a name shared by laws that data often
+    cannot tell apart; ``catalogued`` False keeps a law out of the search for missing effects.
+    """
+
+    states: ClassVar[tuple[str, ...]] = ()
+    port: ClassVar[str] = "joint"
+    family: ClassVar[str | None] = None
+    catalogued: ClassVar[bool] = True
+
+    @classmethod
+    def guesses(cls, system: Any) -> list[AbstractEffect]:
+        """Points from which a fit of this effect to a joint like ``system`` may start, the likeliest first.
+
+        The default is the null value, or a small strength where the null leaves shape parameters undetermined.
+        """
+        described = {f.name: f.metadata["spec"] for f in dataclasses.fields(cls) if "spec" in f.metadata}
+        shaped = any(spec.null is None and not spec.fixed for spec in described.values())
+        strengths = {n: s.scale for n, s in described.items() if shaped and s.null is not None and s.scale}
+        return [cls(**strengths)]
+
+    def torque(self, now: Instant) -> Scalar:
+        """Torque on the link [N m]."""
+        return jnp.zeros_like(now.y)
+
+    def rate(self, now: Instant) -> tuple[Scalar, ...]:
+        """Time derivatives of the internal states, in the order of ``states``."""
+        return ()
+
+    def start(self, now: Instant) -> tuple[Scalar, ...]:
+        """Internal states of a link found at this moment when nothing more is known."""
+        return tuple(jnp.zeros_like(now.y) for _ in self.states)
+
+    def reshape(self, play: Play, t: Scalar) -> Play:
+        """The play as this effect leaves it."""
+        return play
+
+    def observe(self, value: Scalar) -> Scalar:
+        """The measured channel as this effect leaves it."""
+        return value
+
+    def lag(self) -> Scalar | None:
+        """How far the measured channel lags behind the input channel [s]; None when the effect adds no lag."""
+        return None
+
+
+def canonical_name(effect: AbstractEffect | type[AbstractEffect]) -> str:
+    """The name used by the command line, the JSON and the reports: ``TorqueRipple`` is ``torque_ripple``."""
+    cls = effect if isinstance(effect, type) else type(effect)
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
+
+
+def catalogue() -> dict[str, type[AbstractEffect]]:
+    """Every law known so far by canonical name, a user's own classes included; nothing else is registered."""
+    found: dict[str, type[AbstractEffect]] = {}
+    queue: list[Any] = list(AbstractEffect.__subclasses__())
+    while queue:
+        cls = queue.pop(0)
+        queue += cls.__subclasses__()
+        if not cls.__name__.startswith("Abstract"):
+            found[canonical_name(cls)] = cls
+    return dict(sorted(found.items()))

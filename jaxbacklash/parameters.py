@@ -1,0 +1,136 @@
+"""A parameter: a scalar with a unit, bounds and the null value at which its law vanishes.
+
+Every leaf of a law or of a whole system is such a scalar, so the leaves of the pytree, in order, are the
+parameter vector. Names are the paths to the leaves (``gravity.G``); the base model's three parameters and the
+inertia have bare names.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any, TypeVar
+
+import equinox as eqx
+import jax
+import numpy as np
+
+Scalar = Any  # a Python float, or a zero-dimensional float64 array, or a tracer
+Tree = TypeVar("Tree")
+
+
+@dataclasses.dataclass(frozen=True)
+class Spec:
+    """What is known about a parameter before any data.
+
+    Attributes: ``unit`` for a rotating joint (``translational`` rewrites it), ``null`` the value at which the law
+    vanishes (None: a shape parameter, not identified at null), ``lower``/``upper`` physical bounds, ``fixed`` True
+    for a numerical setting that is never fitted, ``scale`` a typical size of a change, ``label`` words for reports.
+    """
+
+    unit: str = "1"
+    null: float | None = None
+    lower: float = -np.inf
+    upper: float = np.inf
+    fixed: bool = False
+    scale: float | None = None
+    label: str = ""
+
+    @property
+    def positive(self) -> bool:
+        """True when the value cannot be zero or change its sign."""
+        return self.lower >= 0 and self.null is None
+
+
+def _scalar(value: Any) -> Any:
+    # Numbers become float64 at birth so that a law built from an int compiles to the same program.
+    if isinstance(value, int | float | np.ndarray | np.generic):
+        return np.asarray(value, dtype=np.float64)
+    return value
+
+
+def param(*, default: float | None = None, **spec: Any) -> Any:
+    """Declare a parameter as a field of a law; see `Spec` for the keywords."""
+    described = Spec(**spec)
+    if default is None and described.null is not None:
+        default = described.null
+    keywords: dict[str, Any] = {"metadata": {"spec": described}, "converter": _scalar}
+    if default is not None:
+        keywords["default"] = float(default)
+    return eqx.field(**keywords)
+
+
+def _walk(node: Any, prefix: str) -> list[tuple[str, Spec]]:
+    if node is None:
+        return []
+    if isinstance(node, dict):  # pytrees sort the keys of a dict, so names must follow
+        return [pair for key in sorted(node) for pair in _walk(node[key], f"{prefix}{key}.")]
+    found: list[tuple[str, Spec]] = []
+    for field in dataclasses.fields(node):
+        if field.metadata.get("static", False):
+            continue
+        if "spec" in field.metadata:
+            found.append((prefix + field.name, field.metadata["spec"]))
+        else:
+            bare = field.metadata.get("bare", False)
+            found += _walk(getattr(node, field.name), prefix if bare else f"{prefix}{field.name}.")
+    return found
+
+
+def specs(tree: Any) -> dict[str, Spec]:
+    """Names and descriptions of all parameters of a law or system, in the order of its leaves."""
+    return dict(_walk(tree, ""))
+
+
+def ravel(tree: Any) -> np.ndarray:
+    """All parameter values as one vector, shape (number of parameters,), in the order of `specs`."""
+    return np.array([float(leaf) for leaf in jax.tree.leaves(tree)])
+
+
+def values(tree: Any) -> dict[str, float]:
+    """Parameter values by name."""
+    return dict(zip(specs(tree), (float(leaf) for leaf in jax.tree.leaves(tree))))
+
+
+def unravel(tree: Tree, vector: Any) -> Tree:
+    """The same law or system with the values of ``vector``; works inside jit, grad and vmap."""
+    treedef = jax.tree.structure(tree)
+    return jax.tree.unflatten(treedef, [vector[i] for i in range(treedef.num_leaves)])
+
+
+def replace(tree: Tree, **changes: float) -> Tree:
+    """The same system with some parameters changed by name (write dots as double underscores).
+
+    Raises
+    ------
+    KeyError
+        A name that the system does not have.
+    """
+    return with_values(tree, {name.replace("__", "."): value for name, value in changes.items()})
+
+
+def with_values(tree: Tree, changes: dict[str, float]) -> Tree:
+    """The same system with the named parameters changed; raises KeyError for an unknown name."""
+    names = list(specs(tree))
+    unknown = sorted(set(changes) - set(names))
+    if unknown:
+        raise KeyError(f"no parameter {', '.join(unknown)}; there are {', '.join(names)}")
+    leaves = [changes.get(name, leaf) for name, leaf in zip(names, jax.tree.leaves(tree))]
+    return jax.tree.unflatten(jax.tree.structure(tree), [_scalar(leaf) for leaf in leaves])
+
+
+_TRANSLATIONAL = {
+    "rad": "m", "N m": "N", "N m/rad": "N/m", "N m s/rad": "N s/m", "kg m^2": "kg", "rad/s": "m/s",
+    "N m/rad^3": "N/m^3", "N m s/rad^2": "N s/m^2", "N m s^2/rad^2": "N s^2/m^2", "N m s^2/rad": "kg", "1/rad": "1/m",
+}  # fmt: skip
+_PER_INERTIA = {
+    "rad": "rad", "N m": "rad/s^2", "N m/rad": "1/s^2", "N m s/rad": "1/s", "kg m^2": "1", "rad/s": "rad/s",
+    "N m/rad^3": "1/(rad^2 s^2)", "N m s/rad^2": "1/(rad s)", "N m s^2/rad^2": "1/rad", "N m s^2/rad": "1",
+}  # fmt: skip
+
+
+def unit_text(unit: str, *, translational: bool = False, per_inertia: bool = False) -> str:
+    """A unit as it is to be printed: rewritten for a translating mass, or for values per unit inertia."""
+    if per_inertia:
+        text = _PER_INERTIA.get(unit, unit)
+        return text.replace("rad", "m") if translational else text
+    return _TRANSLATIONAL.get(unit, unit) if translational else unit

@@ -1,0 +1,8 @@
+"""Arrays in, arrays out; knows no system."""
+
+from .noise import noise_level as noise_level
+from .smoothing import DEGREE as DEGREE
+from .smoothing import SmoothMotion as SmoothMotion
+from .smoothing import choose_intervals as choose_intervals
+from .smoothing import fit_spline as fit_spline
+from .smoothing import knots as knots

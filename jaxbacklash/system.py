@@ -1,0 +1,147 @@
+r"""A system: an inertia, a joint, and a named set of effects, :math:`J \ddot y = F + \sum_k \tau_k`.
+
+Everything dynamic in a `System` is a scalar parameter, so that one compiled program serves all its values. The state
+is a flat tuple ``(y, dy, internal states of the effects in the order of their names)``.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+
+from .effects.contact import Contact, Damper, Spring, corner
+from .mechanics import AbstractEffect, Drive, Instant, Play, canonical_name
+from .parameters import Scalar, param
+
+State = tuple[Scalar, ...]
+
+
+class System(eqx.Module):
+    """One link behind a joint.
+
+    Attributes: ``inertia`` J [kg m^2]; ``contact`` a `Contact` with play, a `Spring` without, or None; ``damper``;
+    ``effects`` by canonical name; ``observed`` the measured channel: ``"z"``, ``"y"``, or ``"T"`` for the torque the
+    joint transmits from the link to its base.
+    """
+
+    inertia: Scalar = param(unit="kg m^2", lower=0.0, label="inertia of the link")
+    contact: Contact | Spring | None = eqx.field(metadata={"bare": True})
+    damper: Damper = eqx.field(metadata={"bare": True})
+    effects: dict[str, AbstractEffect] = eqx.field(default_factory=dict, metadata={"bare": True})
+    observed: str = eqx.field(default="z", static=True)
+
+    def with_effects(self, *effects: AbstractEffect) -> System:
+        """The same system with effects added, or replaced where one of the same name was there."""
+        added = {canonical_name(effect): effect for effect in effects}
+        return System(self.inertia, self.contact, self.damper, {**self.effects, **added}, self.observed)
+
+    def without(self, *names: str) -> System:
+        """The same system with effects taken out by name."""
+        kept = {name: effect for name, effect in self.effects.items() if name not in names}
+        return System(self.inertia, self.contact, self.damper, kept, self.observed)
+
+    @property
+    def state_names(self) -> tuple[str, ...]:
+        """Names of the state: y, dy and ``effect.state`` for internal states."""
+        hidden = (f"{name}.{s}" for name in sorted(self.effects) for s in self.effects[name].states)
+        return ("y", "dy", *hidden)
+
+    @property
+    def has_play(self) -> bool:
+        return isinstance(self.contact, Contact)
+
+    def edges(self, t: Scalar) -> tuple[Scalar, Scalar]:
+        """Lower and upper edge of the play at time ``t`` [rad]."""
+        play = self._play(t)
+        return play.centre - 0.5 * play.backlash, play.centre + 0.5 * play.backlash
+
+    def rates(self, t: Scalar, state: State, drive: Drive, side: Scalar | None = None) -> State:
+        """Time derivative of the state.
+
+        ``side`` -1, 0 or 1 says on which side of the play the link is (a located region, sharp corner); without
+        it the region follows from z and the corner is smoothed over ``contact.width``.
+        """
+        now = self.instant(t, state, drive, side)
+        torque, _ = self._torques(now, state)
+        hidden = tuple(
+            r for name, own in self._own_states(state) for r in self.effects[name].rate(now.seen_by(own))
+        )
+        return (state[1], (drive.force + torque) / self.inertia, *hidden)
+
+    def transmitted(self, t: Scalar, state: State, drive: Drive, side: Scalar | None = None) -> Scalar:
+        """Torque the link exerts on its base through the joint [N m]."""
+        _, joint = self._torques(self.instant(t, state, drive, side), state)
+        return -joint
+
+    def output(self, t: Scalar, state: State, drive: Drive) -> Scalar:
+        """The measured channel, after what the measuring chain does to it."""
+        if self.observed == "T":
+            value = self.transmitted(t, state, drive)
+        else:
+            value = state[0] - drive.x if self.observed == "z" else state[0]
+        for name in sorted(self.effects):
+            value = self.effects[name].observe(value)
+        return value
+
+    def lag(self) -> Scalar | None:
+        """Delay of the measured channel behind the input [s], None when nothing in the system delays it."""
+        lags = [lag for effect in self.effects.values() if (lag := effect.lag()) is not None]
+        return sum(lags) if lags else None
+
+    def rest(self, t: Scalar, y: Scalar, dy: Scalar, drive: Drive) -> State:
+        """State of a link found at ``y``, ``dy`` when nothing is known of the internal states."""
+        bare = (y, dy, *(jnp.zeros_like(y) for _ in self.state_names[2:]))
+        now = self.instant(t, bare, drive, None)
+        hidden = (s for name in sorted(self.effects) for s in self.effects[name].start(now))
+        return (y, dy, *hidden)
+
+    def instant(self, t: Scalar, state: State, drive: Drive, side: Scalar | None = None) -> Instant:
+        """What the effects see at one moment (their own internal states are filled in one by one)."""
+        y, dy = state[0], state[1]
+        z, dz = y - drive.x, dy - drive.dx
+        deflection, contact = self._deflection(t, z, side)
+        stiffness = jnp.zeros_like(z) if self.contact is None else self.contact.stiffness
+        return Instant(t, y, dy, drive.x, drive.dx, z, dz, deflection, contact, stiffness, self.inertia)
+
+    def _play(self, t: Scalar) -> Play:
+        assert isinstance(self.contact, Contact)
+        play = Play(self.contact.backlash)
+        for name in sorted(self.effects):
+            play = self.effects[name].reshape(play, t)
+        return play
+
+    def _deflection(self, t: Scalar, z: Scalar, side: Scalar | None) -> tuple[Scalar, Scalar]:
+        if self.contact is None:
+            return jnp.zeros_like(z), jnp.zeros_like(z)
+        if isinstance(self.contact, Spring):
+            return z, jnp.ones_like(z)
+        low, high = self.edges(t)
+        if side is not None:
+            up, down = side > 0, side < 0
+            deflection = jnp.where(up, z - high, jnp.where(down, z - low, 0.0))
+            return deflection, jnp.where(up | down, 1.0, 0.0)
+        above, in_upper = corner(z - high, self.contact.width)
+        below, in_lower = corner(low - z, self.contact.width)
+        return above - below, in_upper + in_lower
+
+    def _own_states(self, state: State) -> list[tuple[str, State]]:
+        own, at = [], 2
+        for name in sorted(self.effects):
+            count = len(self.effects[name].states)
+            own.append((name, state[at : at + count]))
+            at += count
+        return own
+
+    def _torques(self, now: Instant, state: State) -> tuple[Scalar, Scalar]:
+        joint: Any = -now.stiffness * now.deflection - self.damper.damping * now.dz
+        ground: Any = 0.0
+        for name, own in self._own_states(state):
+            effect = self.effects[name]
+            torque = effect.torque(now.seen_by(own))
+            if effect.port == "joint":
+                joint = joint + torque
+            else:
+                ground = ground + torque
+        return joint + ground, joint
