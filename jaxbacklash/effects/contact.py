@@ -23,7 +23,8 @@ def corner(u: Scalar, width: Scalar) -> tuple[Scalar, Scalar]:
     -------
     value [rad] and slope [1], of the shape of ``u``
     """
-    s = jnp.clip(u / jnp.maximum(width, 1e-300), -1.0, 1.0)
+    # The floor is far below any corner that matters and keeps the derivative in the width finite.
+    s = jnp.clip(u / jnp.maximum(width, 1e-12), -1.0, 1.0)
     value = width * (0.1875 + s * (0.5 + s * (0.375 - 0.0625 * s * s))) + jnp.maximum(u - width, 0.0)
     return value, 0.5 + s * (0.75 - 0.25 * s * s)
 

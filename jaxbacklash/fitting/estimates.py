@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy import stats
+from scipy.special import ndtri
 
 from ..parameters import specs, unit_text, values
 from ..records import Record
 from ..system import System
 
 FOUND, ONE_SIDED, UNDETERMINED = "found", "one-sided", "not determined"
-NORMAL_95 = float(stats.norm.ppf(0.975))
+NORMAL_95 = float(ndtri(0.975))
 
 
 @dataclass(frozen=True)

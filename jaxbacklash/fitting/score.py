@@ -22,8 +22,8 @@ class Score(eqx.Module):
     """The misfit of one record in units of the noise.
 
     Attributes: ``rms`` over all windows; ``median`` window; ``window_rms`` (K,) per score window, NaN where too short;
-    ``window_times`` (K,) their start times [s]; ``t`` (N,), ``predicted`` (N,) measured channel as predicted, ``residual`` (N,)
-    measured minus predicted over the noise; ``starts`` (K, n).
+    ``window_times`` (K,) their start times [s]; ``t`` (N,), ``measured`` and ``predicted`` (N,) the observed channel, ``residual`` (N,)
+    their difference over the noise.
     """
 
     rms: float
@@ -31,6 +31,7 @@ class Score(eqx.Module):
     window_rms: np.ndarray
     window_times: np.ndarray
     t: np.ndarray
+    measured: np.ndarray
     predicted: np.ndarray
     residual: np.ndarray
 
@@ -103,6 +104,7 @@ def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout
         window_rms=ratio,
         window_times=t[0] + layout.dt * layout.length * group * np.arange(groups),
         t=t,
+        measured=flat(w.measured),
         predicted=flat(predicted.motion),
         residual=-flat(motion),
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy import stats
+from scipy.special import gammaincinv
 
 from .smoothing import choose_intervals, fit_spline
 
@@ -34,4 +34,8 @@ def noise_level(t: np.ndarray, values: np.ndarray, *, window: float = 0.1) -> fl
         return fitted.noise
     freedom = length * per_sample
     energy = np.sum(residual[: pieces * length].reshape(pieces, length) ** 2, axis=1)
-    return float(np.sqrt(np.median(energy) / stats.chi2.median(freedom)))
+    return float(np.sqrt(np.median(energy) / _chi2_median(freedom)))
+
+
+def _chi2_median(freedom: float) -> float:
+    return 2.0 * float(gammaincinv(0.5 * freedom, 0.5))

@@ -1,0 +1,31 @@
+"""Backlash, stiffness, damping and the missing physics of a loose joint, from measured motion.
+
+Importing this package changes nothing global. The fits need double precision: call `enable_double_precision` first.
+"""
+
+from .errors import BadInput as BadInput
+from .errors import NoAnswer as NoAnswer
+from .fitting import Fit as Fit
+from .fitting import fit as fit
+from .fitting import predict_record as predict_record
+from .mechanics import AbstractEffect as AbstractEffect
+from .mechanics import Instant as Instant
+from .mechanics import catalogue as catalogue
+from .model_file import dump as dump_model
+from .model_file import load as load_model
+from .models import base_motion_joint as base_motion_joint
+from .models import case_1 as case_1
+from .models import case_2 as case_2
+from .models import dimensionless as dimensionless
+from .models import forced_oscillator as forced_oscillator
+from .models import two_link as two_link
+from .parameters import param as param
+from .precision import enable_double_precision as enable_double_precision
+from .program import start as start
+from .records import Record as Record
+from .records import read_record as read_record
+from .records import write_record as write_record
+from .simulation import simulate as simulate
+from .system import System as System
+
+__version__ = "0.1.0"

@@ -1,0 +1,92 @@
+"""What the commands share: reading records by the user's options, writing results, telling how far the work is."""
+
+from __future__ import annotations
+
+import json
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from ..errors import BadInput
+from ..records import Record, parse_columns, parse_scales, parse_units, read_record
+
+
+def read(
+    path: Path, columns: list[str] | None, unit: list[str] | None, scale: list[str] | None, resample: float | None
+) -> Record:
+    """Read a record with the command line's mappings; ``resample`` 0 means at its own median rate."""
+    return read_record(
+        path,
+        columns=parse_columns(columns) if columns else None,
+        units=parse_units(unit) if unit else None,
+        scales=parse_scales(scale) if scale else None,
+        resample=None if resample is None else (resample or True),
+    )
+
+
+def names(text: str | None) -> list[str]:
+    """A comma-separated list of names."""
+    return [part.strip() for part in (text or "").split(",") if part.strip()]
+
+
+def out_folder(path: Path | None) -> Path | None:
+    """Make the folder for results.
+
+    Raises
+    ------
+    BadInput
+        The path is a file, or cannot be made.
+    """
+    if path is None:
+        return None
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BadInput(f"--out {path}: cannot make this folder ({error.strerror}), wanted a folder to write into") from None
+    return path
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file whole or not at all."""
+    part = path.with_name(path.name + ".part")
+    try:
+        part.write_text(text, encoding="utf-8")
+        part.replace(path)
+    except OSError as error:
+        raise BadInput(f"--out {path}: cannot be written ({error.strerror})") from None
+
+
+def json_text(result: dict[str, Any]) -> str:
+    """The machine-readable result; a number that is not finite would be an error of ours, so it is refused."""
+    return json.dumps(result, indent=2, allow_nan=False) + "\n"
+
+
+class Progress:
+    """One line on a terminal that tells the stage and the time, once the work lasts over two seconds."""
+
+    def __init__(self, live: Any) -> None:
+        self._live, self._begun = live, time.monotonic()
+
+    def __call__(self, stage: str, share: float) -> None:
+        if self._live is not None:
+            bar = self._live
+            bar.update(bar.task_ids[0], description=stage, completed=share, visible=True)
+
+
+@contextmanager
+def progress(quiet: bool = False) -> Iterator[Progress]:
+    """A progress bar on stderr when that is a terminal; nothing otherwise."""
+    if quiet or not sys.stderr.isatty():
+        yield Progress(None)
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bar
+
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
+        bar.add_task("starting", total=1.0)
+        yield Progress(bar)

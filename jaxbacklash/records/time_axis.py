@@ -1,0 +1,155 @@
+"""The times of a record: what counts as uniform, and every refusal that concerns them.
+
+Like those in `checks`, the checks here take `where`, the file as the user named it, and raise `BadInput` or return.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from .checks import number, wrong
+
+RELATIVE = 1e-6
+"""Times are uniform when none is further from an even grid than this fraction of a step."""
+
+HARMLESS = 1e-3
+"""Rounding finer than this fraction of a step is accepted without further evidence."""
+
+GAP = 1.5
+"""A step of this many usual steps is called a gap, where such steps are rare."""
+
+SLOWEST_STEP_S = 0.05
+"""Longer steps are taken for a mistaken unit of time."""
+
+
+def uniform_grid(t: np.ndarray) -> np.ndarray | None:
+    """The even grid that the times stand for.
+
+    Times in files are rounded: printed with three decimals, stored in single precision, or read off a counter.
+    Rounding an even grid to a multiple of u leaves every time within u/2 of a straight line, so times are accepted
+    when they lie that close to one, for a u the times themselves show (see `_roundings`).
+
+    The danger is a lost row that looks like rounding. A rounding finer than a thousandth of a step cannot hide one. A
+    coarser one, up to half a step, is believed only when at least three steps differ from the usual one: rounding
+    spaces its odd steps evenly, which three glitches would hardly do, while one or two may be anything. Rounding to
+    more than half a step cannot be told from lost rows at all.
+
+    Parameters
+    ----------
+    t : array of shape (N,), s, strictly increasing, N >= 3
+
+    Returns
+    -------
+    array of shape (N,) or None
+        `t` itself where it is uniform to 1e-6 of a step, the straight line through it where it is uniform up to its
+        rounding, None where it is not uniform.
+    """
+    rows = np.arange(t.size) - (t.size - 1) / 2
+    since = t - t[0]
+    step = float(rows @ since / (rows @ rows))
+    error = since - step * rows
+    middle, worst = (error.max() + error.min()) / 2, (error.max() - error.min()) / 2
+    if worst <= max(RELATIVE * step, np.spacing(np.abs(t).max())):
+        return t
+    if worst > step / 2:
+        return None
+    steps = np.diff(t)
+    for unit in _roundings(t, steps):
+        if worst > 0.55 * unit:
+            continue
+        usual = np.median(steps)
+        odd = np.count_nonzero(np.abs(steps - usual) > unit / 4)
+        if unit <= HARMLESS * step or (unit <= step / 2 * (1 + RELATIVE) and odd >= 3):
+            return t[0] + middle + step * rows
+    return None
+
+
+def _roundings(t: np.ndarray, steps: np.ndarray) -> Iterator[float]:
+    """Units (s) to which the times may have been rounded, largest unit where the rounding is relative."""
+    # A counter, or a fixed number of decimals: an even grid rounded to u has steps of two sizes only, u apart.
+    low, high = steps.min(), steps.max()
+    unit = high - low
+    largest = np.abs(t).max()
+    fuzz = max(8 * np.spacing(largest), 0.01 * unit)
+    if np.all((steps - low < fuzz) | (high - steps < fuzz)):
+        yield float(unit)
+    # Single precision, perhaps of milliseconds or microseconds that have been converted since.
+    for factor in (1.0, 1e3, 1e6):
+        single = (t * factor).astype(np.float32)
+        if np.allclose(single.astype(np.float64), t * factor, rtol=1e-15, atol=0.0):
+            yield float(np.spacing(np.abs(single).max())) / factor
+    # A fixed number of significant digits, as "%.9g" prints.
+    power = 10.0 ** np.floor(np.log10(np.where(t == 0, 1.0, np.abs(t))))
+    for digits in range(4, 13):
+        scaled = t / power * 10.0 ** (digits - 1)
+        if np.all(np.abs(scaled - np.round(scaled)) <= 4e-16 * 10.0**digits):
+            yield float(10.0 ** (np.floor(np.log10(largest)) - digits + 1))
+            return
+
+
+def increasing(t: np.ndarray, where: str) -> None:
+    """Refuse times that go back or stand still, naming the first two rows (counted from 1) that do."""
+    stuck = np.flatnonzero(np.diff(t) <= 0)
+    if stuck.size:
+        row = stuck[0]
+        what = "stays at" if t[row + 1] == t[row] else "goes back to"
+        found = f"that {t[row]:.9g} s at row {row + 1} {what} {t[row + 1]:.9g} s at row {row + 2}"
+        raise wrong(f"{where}, column t", found, "strictly increasing times")
+
+
+def in_seconds(t: np.ndarray, confirmed, where: str) -> None:
+    """Refuse milliseconds taken for seconds: 20 samples per second cannot show the motion of a loose joint.
+
+    Parameters
+    ----------
+    t : array of shape (N,), increasing
+    confirmed : collection of str
+        Holds "t" when the user stated its unit, which is then believed.
+    """
+    step = float(np.median(np.diff(t)))
+    if step < SLOWEST_STEP_S or "t" in confirmed:
+        return
+    unit = "ms" if step < 50 else "us" if step < 5e4 else "ns"
+    name = {"ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}[unit]
+    raise wrong(
+        f"{where}, column t",
+        f"a step of {number(step)}",
+        f"one under {SLOWEST_STEP_S} s; t looks like {name}, use --unit t={unit} (t=s if it truly is in seconds)",
+    )
+
+
+def uniform(t: np.ndarray, where: str) -> np.ndarray:
+    """The even grid that the times stand for, or a refusal.
+
+    Parameters
+    ----------
+    t : array of shape (N,), s, strictly increasing, N >= 3
+    where : str
+        The file, for the sentence.
+
+    Returns
+    -------
+    array of shape (N,), s
+        See `uniform_grid`.
+
+    Raises
+    ------
+    BadInput
+        Naming the first gap, or the step furthest from the usual one.
+    """
+    grid = uniform_grid(t)
+    if grid is not None:
+        return grid
+    steps = np.diff(t)
+    usual = float(np.median(steps))
+    wide = np.flatnonzero(steps >= GAP * usual)
+    way_out = "mend the times or pass --resample"
+    if 0 < wide.size <= steps.size / 20:
+        row = wide[0]
+        more = f" and {wide.size - 1} more like it" if wide.size > 1 else ""
+        found = f"a gap of {number(steps[row])} s between rows {row + 1} and {row + 2} (at {t[row]:.9g} s){more}"
+        raise wrong(f"{where}, column t", found, f"even steps of {number(usual)} s; {way_out}")
+    row = int(np.argmax(np.abs(steps - usual)))
+    found = f"uneven times, such as a step of {steps[row]:.9g} s between rows {row + 1} and {row + 2}"
+    wanted = f"even steps, of {usual:.9g} s here, to a millionth of a step; {way_out}"
+    raise wrong(f"{where}, column t", found, wanted)

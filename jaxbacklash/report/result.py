@@ -1,0 +1,118 @@
+"""A fit as the machine-readable result of INTERFACE (result.json)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..fitting import Estimate, Fit, Score
+from ..fitting.print_fit import verdict_text
+from ..parameters import unit_text
+from ..records import Record
+
+SCHEMA = 1
+
+
+def finite(value: float | None) -> float | None:
+    """A plain number, or None for one that is not finite."""
+    return None if value is None or not np.isfinite(value) else float(value)
+
+
+def about_record(record: Record) -> dict[str, Any]:
+    """The entry ``record`` of every result."""
+    return {
+        "path": record.path,
+        "samples": record.samples,
+        "rate_hz": record.rate_hz,
+        "channels": ["t", *record.channels],
+        "kind": record.kind,
+        "duration_s": record.samples * record.dt,
+    }
+
+
+def rms(score: Score) -> float:
+    """Plain prediction error in the measured channel's unit (not whitened)."""
+    return float(np.sqrt(np.mean((score.measured - score.predicted) ** 2)))
+
+
+def stage(fit: Fit, added: str | None = None) -> dict[str, Any]:
+    """One entry of ``stages``: a model, how well it predicts, and its parameters."""
+    held = fit.heldout
+    return {
+        "added": added,
+        "effects": sorted(fit.system.effects),
+        "rms": finite(rms(fit.score)),
+        "rms_over_noise": finite(fit.score.rms),
+        "heldout_rms_over_noise": None if held is None else finite(held.rms),
+        "median_over_noise": finite(fit.score.median),
+        "heldout_median_over_noise": None if held is None else finite(held.median),
+        "parameters": {name: clean(estimate) for name, estimate in fit.parameters.items()},
+        "candidates": [],
+    }
+
+
+def clean(estimate: Estimate) -> dict[str, Any]:
+    """A parameter's entry without numbers that JSON cannot carry."""
+    entry = estimate.as_json()
+    entry["label"] = estimate.label or estimate.name
+    for key in ("value", "stderr"):
+        entry[key] = finite(entry[key])
+    if entry["ci95"] is not None and not all(np.isfinite(entry["ci95"])):
+        entry["ci95"] = None
+    return entry
+
+
+def cross_check(fit: Fit) -> dict[str, Any]:
+    """The equation-error estimate beside the fit: another method on the same samples, without simulation."""
+    if fit.start is None:
+        return {"agrees": None, "why": "the fit began from a given model, not from an estimate of its own"}
+    start = fit.start
+    found: dict[str, Any] = {}
+    agrees = True
+    for name in ("backlash", "stiffness", "damping"):
+        value = getattr(start, name)
+        if value is None or name not in fit.parameters:
+            continue
+        estimate = fit.parameters[name]
+        found[name] = {"value": finite(value), "unit": estimate.unit}
+        if estimate.value is not None and name != "damping":
+            agrees &= abs(value - estimate.value) <= 0.03 * abs(estimate.value)
+    return {"equation_error": found, "agrees": bool(agrees), "tolerance": "3 % of play and stiffness"}
+
+
+def as_json(fit: Fit, *, command: str = "fit", command_line: str = "", version: str = "") -> dict[str, Any]:
+    """The whole result of ``fit``."""
+    record = fit.records[0]
+    result: dict[str, Any] = {
+        "schema": SCHEMA,
+        "command": command,
+        "command_line": command_line,
+        "version": version,
+        "record": about_record(record),
+        "noise": {record.observed_name: finite(fit.noise[0])},
+        "per_inertia": fit.per_inertia,
+        "inertia": {
+            "value": float(fit.system.inertia),
+            "unit": unit_text("kg m^2", translational=fit.translational, per_inertia=fit.per_inertia),
+            "given": "inertia" not in fit.free,
+        },
+        "model": fit.model,
+        "stages": [stage(fit)],
+        "effects": sorted(fit.system.effects),
+        "alternatives": [],
+        "verdict": "complete" if fit.adequate else "incomplete",
+        "verdict_text": verdict_text(fit),
+        "cross_check": cross_check(fit),
+        "starts": {"tried": fit.tried, "agreeing": fit.agreeing},
+        "windows_tied": fit.tied,
+        "seconds": {key: round(value, 4) for key, value in fit.seconds.items()},
+    }
+    if fit.input_noise[0] > 0.0:
+        result["noise"][record.input_name or "x"] = finite(fit.input_noise[0])
+    if len(fit.records) > 1:
+        result["records"] = [
+            about_record(r) | {"noise": finite(n), "rms_over_noise": finite(s.rms), "median_over_noise": finite(s.median)}
+            for r, n, s in zip(fit.records, fit.noise, fit.scores)
+        ]
+    return result

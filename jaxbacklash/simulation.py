@@ -1,0 +1,174 @@
+"""Simulate a system under an excitation, through diffrax: one place for steps and tolerances.
+
+Two ways. ``fixed`` steps, located at the edges of the play, are what the fit uses: exact corner, fourth order, cheap.
+``adaptive`` steps with a smoothed corner are the referee: another method, another treatment of the corner.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import diffrax
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from .excitation import AbstractExcitation, Rest, Sampled
+from .mechanics import Drive
+from .precision import require_double_precision
+from .records import Record
+from .signals import choose_intervals, fit_spline
+from .solvers.substeps import DrivenTerm, PanelRK4
+from .system import System
+
+Array = Any
+
+
+class Driven(eqx.Module):
+    """What the solvers take as ``args``: systems and excitations travel as data, so that new numbers compile nothing."""
+
+    system: System
+    excitation: AbstractExcitation
+    t0: Any
+
+
+class Trajectory(eqx.Module):
+    """A simulated motion at N times.
+
+    ``t`` (N,) [s]; ``states`` one (N,) array per name in ``System.state_names``; ``drive`` at the same times;
+    ``observed`` (N,) the measured channel without noise.
+    """
+
+    t: Array
+    states: tuple[Array, ...]
+    drive: Drive
+    observed: Array
+
+    @property
+    def y(self) -> Array:
+        """Absolute motion of the link [rad], (N,)."""
+        return self.states[0]
+
+    @property
+    def dy(self) -> Array:
+        """Absolute speed of the link [rad/s], (N,)."""
+        return self.states[1]
+
+    @property
+    def x(self) -> Array:
+        """Base motion [rad], (N,)."""
+        return jnp.broadcast_to(self.drive.x, self.t.shape)
+
+    @property
+    def z(self) -> Array:
+        """Relative motion y - x [rad], (N,)."""
+        return self.y - self.x
+
+
+def simulate(
+    system: System,
+    excitation: AbstractExcitation | None = None,
+    *,
+    duration: float,
+    rate: float = 500.0,
+    y0: float | None = None,
+    dy0: float | None = None,
+    t0: float = 0.0,
+    panels_per_sample: int | None = None,
+    adaptive: bool = False,
+    rtol: float = 1e-9,
+    atol: float = 1e-12,
+) -> Trajectory:
+    """Simulate a system from given initial values and return N = duration * rate + 1 samples.
+
+    Parameters
+    ----------
+    system : what moves; its ``contact.width`` matters only to the adaptive referee
+    excitation : base motion or force; None: free decay
+    duration, rate : [s], samples per second [Hz]
+    y0, dy0 : start of the link [rad, rad/s]; default: with the base, at its speed
+    t0 : start time [s]
+    panels_per_sample : integration panels between samples (a panel is two Runge-Kutta steps); default: at most 1 ms
+        each, and at least 20 a period of the contact resonance
+    adaptive : use diffrax's adaptive Dopri8 with the smoothed corner, as a referee
+    rtol, atol : tolerances of the referee
+
+    Raises
+    ------
+    RuntimeError
+        JAX is in single precision, or the referee ran out of steps.
+    """
+    require_double_precision("simulate")
+    drive = Rest() if excitation is None else excitation
+    samples = round(duration * rate) + 1
+    start = drive.at(jnp.asarray(float(t0)))
+    y = jnp.asarray(start.x if y0 is None else float(y0), dtype=float)
+    dy = jnp.asarray(start.dx if dy0 is None else float(dy0), dtype=float)
+    state = tuple(jnp.asarray(s, dtype=float) for s in system.rest(jnp.asarray(float(t0)), y, dy, start))
+    args = Driven(system, drive, jnp.asarray(float(t0)))
+    if adaptive:
+        times, states = _adaptive(args, state, jnp.asarray(1.0 / rate), samples, rtol, atol)
+    else:
+        every = panels_per_sample or default_panels(system, rate)
+        times, states = _fixed(args, state, jnp.asarray(1.0 / rate), samples - 1, every, system.has_play)
+    at = jax.vmap(drive.at)(times)
+    observed = jax.vmap(system.output)(times, states, at)
+    return Trajectory(times, states, at, observed)
+
+
+def default_panels(system: System, rate: float) -> int:
+    """Panels between samples: none longer than 1 ms, at least 20 in a period of the contact resonance."""
+    longest = 1e-3
+    if system.contact is not None:
+        omega = float(np.sqrt(np.maximum(system.contact.stiffness, 1e-12) / system.inertia))
+        longest = min(longest, 2.0 * np.pi / omega / 20.0)
+    return max(1, int(np.ceil(1.0 / rate / longest - 1e-9)))
+
+
+@eqx.filter_jit
+def _fixed(args: Driven, state: Any, dt: Any, intervals: int, every: int, located: bool) -> Any:
+    solver = PanelRK4(intervals * every, intervals, located)
+    solution = diffrax.diffeqsolve(
+        DrivenTerm(), solver, 0.0, dt * intervals, dt * intervals, state, args,
+        saveat=diffrax.SaveAt(dense=True), max_steps=1, adjoint=diffrax.ForwardMode(),
+    )  # fmt: skip
+    assert solution.interpolation is not None
+    edges = solution.interpolation.infos["edges"]
+    return args.t0 + dt * jnp.arange(intervals + 1), tuple(e[0] for e in edges)
+
+
+@eqx.filter_jit
+def _adaptive(args: Driven, state: Any, dt: Any, samples: int, rtol: float, atol: float) -> Any:
+    times = dt * jnp.arange(samples)
+    solution = diffrax.diffeqsolve(
+        DrivenTerm(), diffrax.Dopri8(), times[0], times[-1], dt, state, args,
+        saveat=diffrax.SaveAt(ts=times), max_steps=1_000_000, adjoint=diffrax.ForwardMode(),
+        stepsize_controller=diffrax.PIDController(rtol=rtol, atol=atol, dtmax=0.01),
+    )  # fmt: skip
+    return args.t0 + times, solution.ys
+
+
+def measured_base(record: Record) -> Sampled:
+    """The measured drive of a record as an excitation: base motion through its smoothing spline, force by straight lines."""
+    x = dx = np.zeros(record.samples)
+    if "x" in record.channels:
+        values = record.channels["x"]
+        spacing = 0.1 / choose_intervals(record.t, values, 0.1)
+        spline = fit_spline(record.t, values, record.t[0], spacing)
+        x, dx = spline(record.t), spline(record.t, 1)
+    force = record.channels.get("F", np.zeros(record.samples))
+    return Sampled(jnp.asarray(record.t[0]), jnp.asarray(record.dt), *(jnp.asarray(a) for a in (x, dx, force)))
+
+
+def as_record(trajectory: Trajectory, system: System, *, path: str = "", columns: Sequence[str] | None = None) -> Record:
+    """A simulated motion as a record with the channels a measurement would have."""
+    channels: dict[str, np.ndarray] = {}
+    force = np.asarray(jnp.broadcast_to(trajectory.drive.force, trajectory.t.shape))
+    if np.any(np.asarray(trajectory.x)):
+        channels["x"] = np.asarray(trajectory.x)
+    if np.any(force):
+        channels["F"] = force
+    channels[system.observed] = np.asarray(trajectory.observed)
+    return Record(np.asarray(trajectory.t), channels, path)

@@ -1,0 +1,28 @@
+"""Every test runs in double precision; tests on shared records skip where those are absent."""
+
+from pathlib import Path
+
+import jax
+import pytest
+
+from jaxbacklash import enable_double_precision
+
+enable_double_precision()
+jax.config.update("jax_platforms", "cpu")
+
+SHARED = Path(__file__).resolve().parents[2] / "shared"
+
+
+def pytest_collection_modifyitems(items):
+    if SHARED.is_dir():
+        return
+    skip = pytest.mark.skip(reason="the practice records and measured data are not here (../shared)")
+    for item in items:
+        if "shared" in item.keywords:
+            item.add_marker(skip)
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """The folder of practice records and measured data."""
+    return SHARED
