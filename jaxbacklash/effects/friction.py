@@ -24,7 +24,7 @@ class CoulombJoint(AbstractEffect):
     r"""Dry friction in the joint, :math:`T = -T_c\,\mathrm{sgn}(\dot z)`."""
 
     Tc: Scalar = param(unit="N m", null=0.0, lower=0.0, scale=1.0)
-    width: Scalar = param(unit="rad/s", default=2e-3, lower=0.0, fixed=True, label="regularisation of the sign")
+    width: Scalar = param(unit="rad/s", default=1e-3, lower=0.0, fixed=True, label="regularisation of the sign")
 
     def torque(self, now: Instant) -> Scalar:
         return -self.Tc * smooth_sign(now.dz, self.width)
@@ -34,7 +34,7 @@ class CoulombGround(AbstractEffect):
     r"""Dry friction between link and ground, :math:`T = -T_c\,\mathrm{sgn}(\dot y)`."""
 
     Tc: Scalar = param(unit="N m", null=0.0, lower=0.0, scale=1.0)
-    width: Scalar = param(unit="rad/s", default=2e-3, lower=0.0, fixed=True, label="regularisation of the sign")
+    width: Scalar = param(unit="rad/s", default=1e-3, lower=0.0, fixed=True, label="regularisation of the sign")
     port: ClassVar[str] = "ground"
 
     def torque(self, now: Instant) -> Scalar:

@@ -1,5 +1,7 @@
 """From records to parameters: windows, shooting, the arrow's linear algebra, intervals."""
 
+from .compare import Comparison as Comparison
+from .compare import compare as compare
 from .estimates import Estimate as Estimate
 from .fit import Fit as Fit
 from .fit import fit as fit

@@ -8,12 +8,18 @@ which the fit by simulation removes.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any
 
+import equinox as eqx
+import jax.numpy as jnp
 import numpy as np
 from scipy import optimize, signal
 
+from ..mechanics import AbstractEffect, Instant
 from ..records import Record
+from ..signals import choose_intervals, fit_spline
 
 HALF_WIDTH = 0.05
 """Half-width of the bump [s]: shorter amplifies noise, longer blurs the contacts."""
@@ -21,17 +27,29 @@ HALF_WIDTH = 0.05
 
 @dataclass(frozen=True)
 class Start:
-    """Values to start from; a quantity the model does not have is None. ``misfit`` is the residual's share, 0 to 1."""
+    """Values to start from; a quantity the model does not have is None.
+
+    ``effects`` are those given, with their strengths estimated where the torque is linear in one; ``misfit`` is the
+    residual's share, 0 to 1.
+    """
 
     inertia: float
     backlash: float | None
     stiffness: float | None
     damping: float
     misfit: float
+    effects: tuple[AbstractEffect, ...] = ()
 
 
-def estimate(record: Record, *, inertia: float | None, play: bool = True, spring: bool = True) -> Start:
-    """Estimate inertia (when it is None), play, stiffness and damping from one record.
+def estimate(
+    record: Record,
+    *,
+    inertia: float | None,
+    play: bool = True,
+    spring: bool = True,
+    effects: Sequence[AbstractEffect] = (),
+) -> Start:
+    """Estimate inertia (when it is None), play, stiffness, damping and strengths of effects from one record.
 
     Parameters
     ----------
@@ -39,19 +57,21 @@ def estimate(record: Record, *, inertia: float | None, play: bool = True, spring
     inertia : known inertia J [kg m^2]; None to estimate it, which needs a measured force
     play : the joint has a play
     spring : the joint has a stiffness at all
+    effects : effects of the model; those without internal states whose torque vanishes with one strength take part
     """
     weak = _WeakForm(record)
-    fixed_inertia = inertia if inertia is not None else None
+    strengths = [(effect, name) for effect in effects if (name := _strength(effect)) is not None]
 
     def solve(half_play: float) -> tuple[float, np.ndarray]:
         columns = [weak.damping()]
         if spring:
             columns.append(weak.integrate(_dead_zone(weak.z, half_play)))
-        if fixed_inertia is None:
+        if inertia is None:
             columns.append(weak.acceleration)
             right = weak.force
         else:
-            right = weak.force - fixed_inertia * weak.acceleration
+            right = weak.force - inertia * weak.acceleration
+        columns += [-weak.torque(_unit(effect, name), half_play) for effect, name in strengths]
         matrix = np.stack(columns, axis=1)
         scale = np.linalg.norm(matrix, axis=0)
         scale[scale == 0.0] = 1.0
@@ -68,10 +88,39 @@ def estimate(record: Record, *, inertia: float | None, play: bool = True, spring
         low, high = grid[max(k - 1, 0)], grid[min(k + 1, grid.size - 1)]
         half = float(optimize.minimize_scalar(lambda h: solve(h)[0], bounds=(low, high), method="bounded").x)
     misfit, solution = solve(half)
-    found = inertia if inertia is not None else max(float(solution[-1]), 1e-9)
+    rest = iter(solution[2 if spring else 1 :])
+    found = inertia if inertia is not None else max(float(next(rest)), 1e-9)
     stiffness = max(float(solution[1]), 1e-6 * found) if spring else None
     damping = max(float(solution[0]), 1e-4 * (stiffness * found) ** 0.5 if stiffness else 0.0)
-    return Start(found, 2.0 * half if spring and play else None, stiffness, damping, min(misfit, 1.0))
+    return Start(
+        found,
+        2.0 * half if spring and play else None,
+        stiffness,
+        damping,
+        min(misfit, 1.0),
+        tuple(_started(effect, strengths, rest) for effect in effects),
+    )
+
+
+def _strength(effect: AbstractEffect) -> str | None:
+    """The one parameter with which the torque of a law without internal states vanishes, if there is one."""
+    if effect.states or type(effect).torque is AbstractEffect.torque:
+        return None
+    null = [f.name for f in fields(effect) if "spec" in f.metadata and f.metadata["spec"].null is not None]
+    return null[0] if len(null) == 1 else None
+
+
+def _unit(effect: AbstractEffect, name: str) -> AbstractEffect:
+    return eqx.tree_at(lambda e: getattr(e, name), effect, np.asarray(1.0))
+
+
+def _started(effect: AbstractEffect, strengths: list[tuple[AbstractEffect, str]], rest: Any) -> AbstractEffect:
+    for known, name in strengths:
+        if known is effect:
+            spec = next(f.metadata["spec"] for f in fields(effect) if f.name == name)
+            value = float(np.clip(next(rest), spec.lower, spec.upper))
+            return eqx.tree_at(lambda e: getattr(e, name), effect, np.asarray(value))
+    return effect
 
 
 def _dead_zone(z: np.ndarray, half_play: float) -> np.ndarray:
@@ -95,6 +144,8 @@ class _WeakForm:
         x = channels.get("x", zero)
         self.z = channels["z"] if "z" in channels else channels["y"] - x
         y = channels["y"] if "y" in channels else self.z + x
+        self._record, self._x, self._y = record, x, y
+        self._speeds: tuple[np.ndarray, np.ndarray] | None = None
         self.acceleration = self._against(self._bump2, y)
         self.force = self._against(self._bump, channels.get("F", zero))
 
@@ -103,6 +154,28 @@ class _WeakForm:
 
     def integrate(self, torque: np.ndarray) -> np.ndarray:
         return self._against(self._bump, torque)
+
+    def torque(self, effect: AbstractEffect, half_play: float) -> np.ndarray:
+        """Torque of an effect on the measured motion; only laws that need speeds look at smoothed ones."""
+        dy, dx = self._smooth_speeds()
+        deflection = _dead_zone(self.z, half_play)
+        contact = (np.abs(self.z) > half_play).astype(float)
+        one = jnp.ones(())
+        now = Instant(
+            self._record.t, self._y, dy, self._x, dx, self.z, dy - dx, deflection, contact, one, one
+        )
+        return self.integrate(np.asarray(effect.torque(now)) * np.ones_like(self.z))
+
+    def _smooth_speeds(self) -> tuple[np.ndarray, np.ndarray]:
+        if self._speeds is None:
+            t, window = self._record.t, 0.1
+            spline = [
+                fit_spline(t, v, t[0], window / choose_intervals(t, v, window)) if np.any(v) else None
+                for v in (self._y, self._x)
+            ]
+            dy, dx = (np.zeros_like(self._y) if f is None else f(t, 1) for f in spline)
+            self._speeds = dy, dx
+        return self._speeds
 
     def _against(self, bump: np.ndarray, values: np.ndarray) -> np.ndarray:
         return signal.oaconvolve(values, bump[::-1], mode="valid")[:: self._stride]

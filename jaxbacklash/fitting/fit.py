@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import equinox as eqx
@@ -19,10 +19,11 @@ from ..system import System
 from .estimates import Estimate, judge
 from .equation_error import Start
 from .levenberg import ArrowLevenbergMarquardt, minimise
+from .profile import with_profiles
 from .score import Score, score
 from .setup import base_system, first_guess, free_names, make_problem
 from .shooting import Problem, Unknowns
-from .windows import Layout, Windows, cut
+from .windows import LONGEST_PANEL, Layout, Windows, cut
 
 SHOOTING_WINDOW = 0.1
 """Length of a shooting window [s]. Windows of 0.1 s converge from wild starts; 0.25 s and longer mostly do not."""
@@ -30,6 +31,10 @@ SCORE_WINDOW = 0.2
 """Length of the windows whose prediction error is quoted [s]."""
 ADEQUATE = 1.25
 """Windows are tied into one trajectory only where the untied misfit is below this many noises: else the model is wrong."""
+
+
+def silent(stage: str, share: float) -> None:
+    """Tell nobody how far the work is."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +90,7 @@ def fit(
     *,
     model: str = "joint",
     inertia: float | None = None,
-    effects: Sequence[AbstractEffect] = (),
+    effects: Sequence[AbstractEffect | str] = (),
     system: System | None = None,
     free: Sequence[str] | None = None,
     heldout: Record | None = None,
@@ -93,6 +98,8 @@ def fit(
     starts: int = 4,
     seed: int = 0,
     translational: bool = False,
+    profile: bool = False,
+    progress: Callable[[str, float], None] = silent,
 ) -> Fit:
     """Fit a model to one or more records.
 
@@ -101,7 +108,7 @@ def fit(
     records : records of one kind and rate; parameters are shared
     model : ``"joint"``, ``"linear"`` or ``"free"``; ignored when ``system`` is given
     inertia : J [kg m^2]; None: fitted to force-driven records, else values are per unit inertia
-    effects : effects added to the base model, at starting values
+    effects : effects added to the base model, as they are or by canonical name
     system : a system to start from instead of an estimate from the data
     free : names of the free parameters; default all but the inertia and numerical settings
     heldout : a record to predict with the fitted parameters frozen
@@ -109,6 +116,8 @@ def fit(
     starts : how many starting points are tried (the first is the equation-error estimate)
     seed : seed of the further starting points
     translational : units of a translating mass
+    profile : intervals from the profile likelihood instead of the curvature at the minimum
+    progress : told the stage in words and the share of the work done
 
     Raises
     ------
@@ -122,23 +131,24 @@ def fit(
     require_double_precision("fit")
     chosen = (records,) if isinstance(records, Record) else tuple(records)
     clock = {"start": time.perf_counter()}
+    progress("reading noise and a first estimate", 0.02)
     start: Start | None = None
     if system is None:
         system, names, start = base_system(chosen[0], model, inertia, effects)
     else:
-        names = free_names(system)
+        names, model = free_names(system), "given"
     names = tuple(free) if free is not None else names
-    windows, layout = cut(chosen, 0.5 * window if window < 2 * SHOOTING_WINDOW else SHOOTING_WINDOW)
-    group = max(1, round(window / (layout.length * layout.dt)))
+    windows, layout, group = prepare(system, chosen, window)
     clock["cut"] = time.perf_counter()
 
-    found = search(system, windows, names, starts=starts, seed=seed)
+    found = search(system, windows, names, starts=starts, seed=seed, progress=progress)
     clock["search"] = time.perf_counter()
+    progress("scoring predictions", 0.85)
     problem, unknowns = found.problem, found.unknowns
     fitted = with_values(system, dict(zip(values(system), np.asarray(problem.parameters(unknowns.theta)))))
 
     scored = [score(problem, unknowns, layout, group=group, record=i)[0] for i in range(len(chosen))]
-    held = predict_record(fitted, heldout, group=group)[0] if heldout is not None else None
+    held = predict_record(fitted, heldout, window=window, free=names) if heldout is not None else None
     clock["score"] = time.perf_counter()
 
     excess = max(1.0, scored[0].rms**2) if not found.tied else 1.0
@@ -146,6 +156,8 @@ def fit(
     stderr = dict(zip(names, np.sqrt(np.diag(covariance))))
     per_inertia = inertia is None and chosen[0].kind != "force"
     estimates = judge(fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational)
+    if profile:
+        estimates = with_profiles(problem, unknowns, estimates, names, stderr, progress)
     marks = list(clock.items())
     return Fit(
         fitted, names, estimates, tuple(scored), held, chosen, layout.noise, layout.input_noise, covariance,
@@ -168,7 +180,27 @@ class Found:
     steps: int
 
 
-def search(system: System, windows: Windows, free: Sequence[str], *, starts: int, seed: int) -> Found:
+def prepare(system: System, records: Sequence[Record], window: float) -> tuple[Windows, Layout, int]:
+    """Shooting windows for a system like this one, and how many of them make a score window of the wished length."""
+    shooting = 0.5 * window if window < 2 * SHOOTING_WINDOW else SHOOTING_WINDOW
+    longest = LONGEST_PANEL
+    if system.contact is not None:
+        # Forty panels a period of the contact resonance keep the integration error a thousandth of an encoder's noise.
+        omega = np.sqrt(float(system.contact.stiffness) / float(system.inertia))
+        longest = min(longest, max(2.0 * np.pi / max(omega, 1e-9) / 40.0, records[0].dt / 16.0))
+    windows, layout = cut(records, shooting, longest_panel=longest)
+    return windows, layout, max(1, round(window / (layout.length * layout.dt)))
+
+
+def search(
+    system: System,
+    windows: Windows,
+    free: Sequence[str],
+    *,
+    starts: int,
+    seed: int,
+    progress: Callable[[str, float], None] = silent,
+) -> Found:
     """Minimise the misfit over free windows from several starts, then tie the best one's windows into one trajectory."""
     problem = make_problem(system, windows, free)
     guess = first_guess(problem)
@@ -176,6 +208,7 @@ def search(system: System, windows: Windows, free: Sequence[str], *, starts: int
     rng = np.random.default_rng(seed)
     tried = []
     for attempt in range(max(1, starts)):
+        progress(f"fitting, start {attempt + 1} of {max(1, starts)}", 0.05 + 0.6 * attempt / max(1, starts))
         begin = guess
         if attempt:
             # Values that must keep their sign move by up to a factor of 1.6; others by a little of their scale.
@@ -195,6 +228,7 @@ def search(system: System, windows: Windows, free: Sequence[str], *, starts: int
     tied = bool(np.sqrt(2.0 * cost / _freedom(best.value, windows)) < ADEQUATE)
     steps = int(best.stats["state"].steps)
     if tied:
+        progress("tying the windows into one trajectory", 0.7)
         joined = eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(1.0))
         solution = minimise(joined, best.value, solver)
         after = float(solution.stats["state"].blocks.cost)
@@ -208,13 +242,17 @@ def search(system: System, windows: Windows, free: Sequence[str], *, starts: int
     return Found(problem, best.value, covariance, cost, agreeing, len(tried), tied, steps)
 
 
-def predict_record(system: System, record: Record, *, group: int = 2) -> tuple[Score, Layout]:
-    """Score a system with frozen parameters on a record it may never have seen, window starts re-estimated."""
-    windows, layout = cut([record], SHOOTING_WINDOW)
-    # The number of free directions stays that of a joint's fit, so that the compiled program serves again.
-    problem = make_problem(system, windows, free_names(system))
-    found, _ = score(problem, first_guess(problem), layout, group=group)
-    return found, layout
+def predict_record(
+    system: System, record: Record, *, window: float = SCORE_WINDOW, free: Sequence[str] | None = None
+) -> Score:
+    """Score a system with frozen parameters on a record it may never have seen, window starts re-estimated.
+
+    ``free`` only sets how many directions the problem carries, so that the program compiled for a fit serves again.
+    """
+    require_double_precision("predict_record")
+    windows, layout, group = prepare(system, [record], window)
+    problem = make_problem(system, windows, free_names(system) if free is None else free)
+    return score(problem, first_guess(problem), layout, group=group)[0]
 
 
 def _freedom(unknowns: Unknowns, windows: Windows) -> float:

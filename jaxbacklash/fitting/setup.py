@@ -10,7 +10,7 @@ import numpy as np
 from ..effects import Contact, Damper, Spring
 from ..errors import BadInput
 from ..mechanics import AbstractEffect, Drive, catalogue
-from ..parameters import ravel, specs, values
+from ..parameters import ravel, specs, values, with_values
 from ..records import Record
 from ..system import System
 from .equation_error import Start, estimate
@@ -21,7 +21,7 @@ MODELS = ("joint", "linear", "free")
 
 
 def base_system(
-    record: Record, model: str, inertia: float | None, effects: Sequence[AbstractEffect] = ()
+    record: Record, model: str, inertia: float | None, effects: Sequence[AbstractEffect | str] = ()
 ) -> tuple[System, tuple[str, ...], Start]:
     """A base model with starting values from the record, and the names of its free parameters.
 
@@ -30,7 +30,7 @@ def base_system(
     record : the record to start from
     model : ``"joint"``, ``"linear"`` (no play) or ``"free"`` (no spring)
     inertia : J [kg m^2]; None fits it to a record with a force, and takes 1 (values per unit inertia) otherwise
-    effects : added at their starting values
+    effects : added as they are, or by canonical name at their starting values
 
     Raises
     ------
@@ -49,15 +49,38 @@ def base_system(
     known = inertia
     if inertia is None and record.kind != "force":
         known = 1.0
-    start = estimate(record, inertia=known, play=model == "joint", spring=model != "free")
+    flags = {"play": model == "joint", "spring": model != "free"}
+    start = estimate(record, inertia=known, **flags)
+    system = _sharpen(add_effects(_system(start, record, model), effects), record)
+    if system.effects:
+        # Once more with the effects in the regression: a load left out bends the estimate of the joint.
+        start = estimate(record, inertia=known, effects=list(system.effects.values()), **flags)
+        system = _system(start, record, model).with_effects(*start.effects)
+    free = () if known is not None else ("inertia",)
+    return system, free + free_names(system), start
+
+
+def _sharpen(system: System, record: Record) -> System:
+    """Regularise the sign of a speed over less than half a percent of the speeds in the record, where that is sharper."""
+    moved = record.channels[record.observed_name]
+    lag = max(1, round(0.01 / record.dt))
+    speed = float(np.sqrt(np.mean((moved[lag:] - moved[:-lag]) ** 2))) / (lag * record.dt)
+    present = values(system)
+    sharper = {
+        name: min(present[name], 0.004 * speed)
+        for name, spec in specs(system).items()
+        if spec.fixed and spec.unit == "rad/s" and speed > 0.0
+    }
+    return with_values(system, sharper)
+
+
+def _system(start: Start, record: Record, model: str) -> System:
     contact: Contact | Spring | None = None
     if model == "joint":
         contact = Contact(start.backlash, start.stiffness)
     elif model == "linear":
         contact = Spring(start.stiffness)
-    system = System(start.inertia, contact, Damper(start.damping), observed=record.observed_name)
-    free = () if known is not None else ("inertia",)
-    return system.with_effects(*effects), free + free_names(system.with_effects(*effects)), start
+    return System(start.inertia, contact, Damper(start.damping), observed=record.observed_name)
 
 
 def free_names(system: System) -> tuple[str, ...]:
@@ -65,8 +88,8 @@ def free_names(system: System) -> tuple[str, ...]:
     return tuple(name for name, spec in specs(system).items() if not spec.fixed and name != "inertia")
 
 
-def effects_by_name(names: Sequence[str], system: System) -> list[AbstractEffect]:
-    """Effects at their starting values from canonical names.
+def add_effects(system: System, effects: Sequence[AbstractEffect | str]) -> System:
+    """The system with effects added: as they are, or by canonical name at their starting values.
 
     Raises
     ------
@@ -74,10 +97,13 @@ def effects_by_name(names: Sequence[str], system: System) -> list[AbstractEffect
         A name that is not in the catalogue.
     """
     known = catalogue()
-    unknown = [name for name in names if name not in known]
-    if unknown:
-        raise BadInput(f"--effects {unknown[0]}: no such effect; known are {', '.join(known)}")
-    return [known[name].guesses(system)[0] for name in names]
+    for effect in effects:
+        if isinstance(effect, str):
+            if effect not in known:
+                raise BadInput(f"--effects {effect}: no such effect, wanted some of {', '.join(known)}")
+            effect = known[effect].guesses(system)[0]
+        system = system.with_effects(effect)
+    return system
 
 
 def make_problem(system: System, windows: Windows, free: Sequence[str], *, tie: float = 0.0) -> Problem:

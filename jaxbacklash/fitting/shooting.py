@@ -179,11 +179,8 @@ def linearise(problem: Problem, unknowns: Unknowns) -> tuple[Blocks, Prediction]
 
     def one(s: Array, c: Array, t0: Array, f: Array) -> tuple[Prediction, Prediction]:
         run = lambda s, c, th: predict(problem, th, s, c, t0, f)  # noqa: E731
-        primal = run(s, c, unknowns.theta)
-        push = lambda e: jax.jvp(  # noqa: E731
-            run, (s, c, unknowns.theta), (e[:n], e[n : n + free], e[n + free :])
-        )[1]
-        return primal, jax.vmap(push)(seeds)
+        push = lambda e: jax.jvp(run, (s, c, unknowns.theta), (e[:n], e[n : n + free], e[n + free :]))  # noqa: E731
+        return jax.vmap(push, out_axes=(None, 0))(seeds)
 
     predicted, tangents = jax.vmap(one, in_axes=(1, 0, 0, 0))(unknowns.starts, local, w.t0, w.force)
     motion, base, tie = residuals(problem, unknowns, predicted)
@@ -207,27 +204,29 @@ def linearise(problem: Problem, unknowns: Unknowns) -> tuple[Blocks, Prediction]
 def _assemble(
     gram: Array, slope: Array, end_rows: Array, tie: Array, tie_weight: Array, n: int, m: int, q: int, cost: Array
 ) -> Blocks:
-    size, own, count = n + m, slice(0, n + m), gram.shape[0]
+    size, own = n + m, slice(0, n + m)
     shared = slice(n + m, gram.shape[1] - q)
     theta = slice(gram.shape[1] - q, gram.shape[1])
     k = shared.stop - shared.start
-    # Unknowns of window w + 1 as window w sees them: its start through the tie, its first spline coefficients.
-    place = slice(n, n + k)
     diagonal = gram[:, own, own]
     border = gram[:, own, theta]
     gradient = slope[:, own]
 
-    carried = jnp.zeros((count, size, size)).at[:, place, place].set(gram[:, shared, shared])
-    carried = carried.at[:, jnp.arange(n), jnp.arange(n)].add(tie_weight**2)
+    # Unknowns of window w + 1 as window w sees them: its start through the tie, its first spline coefficients.
+    # Padding and joining instead of indexed updates: scatters cost more than the whole simulation on a CPU.
     weighted = -tie_weight[:, :, None] * jnp.swapaxes(end_rows, 1, 2)  # (W, n, unknowns): start of w + 1 against window w
     cross = weighted[:, :, shared]
-    carried = carried.at[:, :n, place].add(cross).at[:, place, :n].add(jnp.swapaxes(cross, 1, 2))
-    below = jnp.zeros((count, size, size)).at[:, place, :].set(gram[:, shared, own])
-    below = below.at[:, :n, :].add(weighted[:, :, own])
-    border_next = jnp.zeros((count, size, q)).at[:, place, :].set(gram[:, shared, theta])
-    border_next = border_next.at[:, :n, :].add(weighted[:, :, theta])
-    slope_next = jnp.zeros((count, size)).at[:, place].set(slope[:, shared])
-    slope_next = slope_next.at[:, :n].add(-tie_weight * tie)
+    rest = size - n - k
+    upper = jnp.concatenate([(tie_weight**2)[:, :, None] * jnp.eye(n), cross], axis=2)
+    lower = jnp.concatenate([jnp.swapaxes(cross, 1, 2), gram[:, shared, shared]], axis=2)
+    carried = jnp.pad(jnp.concatenate([upper, lower], axis=1), ((0, 0), (0, rest), (0, rest)))
+
+    def join(start_rows: Array, shared_rows: Array) -> Array:
+        return jnp.pad(jnp.concatenate([start_rows, shared_rows], axis=1), ((0, 0), (0, rest), (0, 0)))
+
+    below = join(weighted[:, :, own], gram[:, shared, own])
+    border_next = join(weighted[:, :, theta], gram[:, shared, theta])
+    slope_next = join((-tie_weight * tie)[:, :, None], slope[:, shared, None])[:, :, 0]
 
     shift = lambda a: jnp.concatenate([jnp.zeros_like(a[:1]), a[:-1]])  # noqa: E731
     return Blocks(
@@ -247,9 +246,9 @@ def _ridge(problem: Problem, unknowns: Unknowns, blocks: Blocks, n: int) -> Bloc
     w = problem.windows
     level = 1e-6 * jnp.max(w.x_weight, initial=0.0) ** 2
     change = unknowns.coefficients - w.coefficients
-    slope = blocks.slope.at[:, n:].add(level * change)
+    slope = blocks.slope + jnp.pad(level * change, ((0, 0), (n, 0)))
     size = blocks.diagonal.shape[1]
-    diagonal = blocks.diagonal.at[:, jnp.arange(n, size), jnp.arange(n, size)].add(level)
+    diagonal = blocks.diagonal + level * jnp.diag(jnp.where(jnp.arange(size) < n, 0.0, 1.0))
     bare = jnp.diagonal(diagonal, axis1=1, axis2=2) == 0.0
     diagonal = diagonal + jnp.where(bare, 1.0, 0.0)[:, :, None] * jnp.eye(size)
     cost = blocks.cost + 0.5 * level * jnp.sum(change**2)

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from ..fitting import Estimate, Fit, Score
+from ..fitting import Comparison, Estimate, Fit, Score
 from ..fitting.print_fit import verdict_text
-from ..parameters import unit_text
+from ..parameters import specs, unit_text, values
 from ..records import Record
 
 SCHEMA = 1
@@ -116,3 +116,26 @@ def as_json(fit: Fit, *, command: str = "fit", command_line: str = "", version: 
             for r, n, s in zip(fit.records, fit.noise, fit.scores)
         ]
     return result
+
+
+def comparison_json(found: Comparison, model: str, *, command_line: str = "", version: str = "") -> dict[str, Any]:
+    """The whole result of ``compare``; one stage, whose parameters are the model file's."""
+    record, described, present = found.record, specs(found.system), values(found.system)
+    parameters = {
+        name: {
+            "value": finite(present[name]), "stderr": None, "ci95": None, "verdict": "given", "label": spec.label or name,
+            "unit": unit_text(spec.unit, translational=found.translational),
+        }
+        for name, spec in described.items() if not spec.fixed
+    }  # fmt: skip
+    only = {
+        "added": None, "effects": sorted(found.system.effects), "rms": finite(rms(found.score)),
+        "rms_over_noise": finite(found.score.rms), "median_over_noise": finite(found.score.median),
+        "heldout_rms_over_noise": None, "heldout_median_over_noise": None, "parameters": parameters, "candidates": [],
+    }  # fmt: skip
+    return {
+        "schema": SCHEMA, "command": "compare", "command_line": command_line, "version": version, "model": model,
+        "record": about_record(record), "noise": {record.observed_name: finite(found.noise)}, "stages": [only],
+        "effects": sorted(found.system.effects), "alternatives": [],
+        "verdict": "complete" if found.adequate else "incomplete", "verdict_text": found.sentence(),
+    }  # fmt: skip

@@ -1,0 +1,175 @@
+"""The command line: ``jaxbacklash COMMAND``. Declares the commands and turns errors into exit codes.
+
+0 done; 2 bad input, with one sentence; 1 it ran and could not reach an answer. What a command does is in
+`jaxbacklash.commands`, imported only when it is called, so that ``--help`` is quick.
+"""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from .errors import BadInput, NoAnswer
+
+app = typer.Typer(
+    name="jaxbacklash",
+    help="Find backlash, stiffness, damping and the missing physics of a loose joint from measured motion.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+Columns = Annotated[list[str] | None, typer.Option("--columns", help="Other column names: t=time_s,x=enc1,z=enc2")]
+Unit = Annotated[list[str] | None, typer.Option("--unit", help="Convert a channel to SI: x=deg or x=deg,t=ms")]
+Scale = Annotated[list[str] | None, typer.Option("--scale", help="Multiply a channel: F=35.15")]
+Resample = Annotated[
+    float | None, typer.Option("--resample", help="Bring uneven times to this rate [Hz]; 0: the record's own median rate")
+]
+Inertia = Annotated[
+    float | None,
+    typer.Option("--inertia", help="Inertia of the link about its joint [kg m^2; kg]; without it values are per unit inertia"),
+]
+Out = Annotated[Path | None, typer.Option("--out", help="Folder for result.json, model.toml and report.html")]
+Json = Annotated[bool, typer.Option("--json", help="Print the machine-readable result and nothing else")]
+Seed = Annotated[int, typer.Option("--seed", help="Seed of everything random")]
+Window = Annotated[float, typer.Option("--window", help="Length of the windows whose prediction error is quoted [s]")]
+Translation = Annotated[bool, typer.Option("--translation", help="The record is of a translating mass: m, kg, N")]
+Heldout = Annotated[Path | None, typer.Option("--heldout", help="A record to predict with the fitted parameters frozen")]
+
+
+@app.command(
+    epilog="Example: jaxbacklash fit run1.csv --inertia 3.16 --columns x=enc1,z=enc2 --unit x=deg,z=deg --out fit1"
+)
+def fit(
+    records: Annotated[list[Path], typer.Argument(help="One or more records: CSV, npz or mat; see the README for columns")],
+    inertia: Inertia = None,
+    model: Annotated[str, typer.Option("--model", help="joint, linear, free, or a model file FILE.toml to start from")] = "joint",
+    effects: Annotated[str | None, typer.Option("--effects", help="Effects to add: gravity,coulomb_joint")] = None,
+    heldout: Heldout = None,
+    out: Out = None,
+    json: Json = False,
+    columns: Columns = None,
+    unit: Unit = None,
+    scale: Scale = None,
+    resample: Resample = None,
+    window: Window = 0.2,
+    starts: Annotated[int, typer.Option("--starts", help="How many starting points are tried")] = 4,
+    profile: Annotated[bool, typer.Option("--profile", help="Intervals from the profile likelihood (slower)")] = False,
+    translation: Translation = False,
+    seed: Seed = 0,
+) -> None:
+    """Fit backlash, stiffness and damping (and effects you name) to one or more records."""
+    from .commands import fit as command
+
+    command.run(
+        records, inertia=inertia, model=model, effects=effects, heldout=heldout, out=out, as_json=json, columns=columns,
+        unit=unit, scale=scale, resample=resample, window=window, starts=starts, profile=profile,
+        translational=translation, seed=seed,
+    )  # fmt: skip
+
+
+@app.command(epilog="Example: jaxbacklash compare fit1/model.toml run2.csv --out compare2")
+def compare(
+    model: Annotated[Path, typer.Argument(help="A model file (TOML), as written by fit")],
+    record: Annotated[Path, typer.Argument(help="A record")],
+    out: Out = None,
+    json: Json = False,
+    columns: Columns = None,
+    unit: Unit = None,
+    scale: Scale = None,
+    resample: Resample = None,
+    window: Window = 0.2,
+    translation: Translation = False,
+    seed: Seed = 0,
+) -> None:
+    """Compare a model with a record it may never have seen: where does it fail, and by how many noises?"""
+    from .commands import compare as command
+
+    command.run(
+        model, record, out=out, as_json=json, columns=columns, unit=unit, scale=scale, resample=resample, window=window,
+        translational=translation,
+    )  # fmt: skip
+
+
+@app.command(
+    epilog="Example: jaxbacklash simulate fit1/model.toml --excitation chirp:amplitude=0.07,f0=0,f1=12 --duration 30 --out sim.csv"
+)
+def simulate(
+    model: Annotated[Path, typer.Argument(help="A model file (TOML)")],
+    out: Annotated[Path, typer.Option("--out", help="Record to write: .csv, .npz or .mat")],
+    excitation: Annotated[
+        str,
+        typer.Option(
+            "--excitation",
+            help="harmonic:amplitude=,frequency= | chirp:amplitude=,f0=,f1= | multisine:amplitude=,low=,high=,lines= | "
+            "stepped:amplitude=,low=,high=,steps= | rest | FILE of a record whose x or F is used; amplitudes in rad (N m with --force)",
+        ),
+    ] = "chirp:amplitude=0.07,f0=0,f1=12",
+    force: Annotated[bool, typer.Option("--force", help="The excitation is a force or torque on the link")] = False,
+    duration: Annotated[float, typer.Option("--duration", help="Length [s]")] = 30.0,
+    rate: Annotated[float, typer.Option("--rate", help="Samples per second [Hz]")] = 500.0,
+    noise: Annotated[float, typer.Option("--noise", help="Noise added to every motion channel, std [rad]")] = 0.0,
+    y0: Annotated[float | None, typer.Option("--y0", help="Start of the link [rad]; default: at the base")] = None,
+    dy0: Annotated[float | None, typer.Option("--dy0", help="Start speed of the link [rad/s]")] = None,
+    json: Json = False,
+    seed: Seed = 0,
+) -> None:
+    """Simulate a model and write what a measurement of it would look like."""
+    from .commands import simulate as command
+
+    command.run(
+        model, out=out, excitation=excitation, as_force=force, duration=duration, rate=rate, noise=noise, y0=y0, dy0=dy0,
+        as_json=json, seed=seed,
+    )  # fmt: skip
+
+
+@app.command(epilog="Example: jaxbacklash demo --out demo")
+def demo(
+    out: Annotated[Path, typer.Option("--out", help="Folder for what the demo makes")] = Path("jaxbacklash-demo"),
+    json: Json = False,
+) -> None:
+    """Fit the record that ships with the package, and see where the base model fails."""
+    from .commands import demo as command
+
+    command.run(out=out, as_json=json)
+
+
+def _plain_warning(message: Any, category: Any, filename: str, lineno: int, file: Any = None, line: Any = None) -> None:
+    print(f"warning: {message}", file=sys.stderr)
+
+
+def main() -> None:
+    """Run the command line; every foreseeable error ends in one sentence and an exit code."""
+    warnings.showwarning = _plain_warning
+    from .program import start
+
+    start()
+    try:
+        app(standalone_mode=False)
+    except BadInput as error:
+        sys.exit(_say(f"error: {error}", 2))
+    except NoAnswer as error:
+        sys.exit(_say(f"no answer: {error}", 1))
+    except typer.Exit as end:
+        sys.exit(end.exit_code)
+    except (KeyboardInterrupt, typer.Abort):
+        sys.exit(_say("stopped", 1))
+    except BrokenPipeError:
+        sys.exit(1)
+    except Exception as error:
+        if hasattr(error, "format_message"):  # a wrong word on the command line, told by the parser
+            sys.exit(_say(f"error: {' '.join(error.format_message().split())}", 2))
+        raise
+
+
+def _say(sentence: str, code: int) -> int:
+    print(" ".join(sentence.split()), file=sys.stderr)
+    return code
+
+
+if __name__ == "__main__":
+    main()

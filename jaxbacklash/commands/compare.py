@@ -1,0 +1,52 @@
+"""``jaxbacklash compare``."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from pathlib import Path
+
+from .. import __version__
+from ..errors import BadInput
+from ..fitting import compare as compare_records
+from ..model_file import dump, load
+from ..report.fit_report import compare_report
+from ..report.result import comparison_json
+from .common import json_text, out_folder, progress, read, write_text
+
+
+def run(
+    model: Path,
+    path: Path,
+    *,
+    out: Path | None,
+    as_json: bool,
+    columns: list[str] | None,
+    unit: list[str] | None,
+    scale: list[str] | None,
+    resample: float | None,
+    window: float,
+    translational: bool,
+) -> None:
+    """Read both, predict window by window, print; write the result and the report when a folder is given."""
+    if not 0.02 <= window <= 10.0:
+        raise BadInput(f"--window {window:g}: wanted a length between 0.02 and 10 s")
+    system = load(model)
+    record = read(path, columns, unit, scale, resample)
+    folder = out_folder(out)
+    with progress(as_json) as tell:
+        tell("predicting", 0.1)
+        found = compare_records(system, record, window=window, translational=translational)
+        words = shlex.join(["jaxbacklash", *sys.argv[1:]])
+        result = comparison_json(found, str(model), command_line=words, version=__version__)
+        if folder is not None:
+            tell("drawing the report", 0.8)
+            write_text(folder / "result.json", json_text(result))
+            write_text(folder / "model.toml", dump(system, translational=translational))
+            compare_report(found, result, folder / "report.html")
+    if as_json:
+        sys.stdout.write(json_text(result))
+        return
+    print(found)
+    if folder is not None:
+        print(f"written: {folder}/result.json, model.toml, report.html")

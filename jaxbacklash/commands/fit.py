@@ -1,0 +1,86 @@
+"""``jaxbacklash fit``."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from .. import __version__
+from ..errors import BadInput
+from ..fitting import Fit
+from ..fitting import fit as fit_records
+from ..fitting.setup import add_effects
+from ..model_file import dump, load
+from ..report.fit_report import fit_report
+from ..report.result import as_json
+from ..system import System
+from .common import json_text, names, out_folder, progress, read, write_text
+
+
+def run(
+    paths: Sequence[Path],
+    *,
+    inertia: float | None,
+    model: str,
+    effects: str | None,
+    heldout: Path | None,
+    out: Path | None,
+    as_json: bool,
+    columns: list[str] | None,
+    unit: list[str] | None,
+    scale: list[str] | None,
+    resample: float | None,
+    window: float,
+    starts: int,
+    profile: bool,
+    translational: bool,
+    seed: int,
+) -> None:
+    """Read, fit, print; write the result, the model and the report when a folder is given."""
+    if not 0.02 <= window <= 10.0:
+        raise BadInput(f"--window {window:g}: wanted a length between 0.02 and 10 s")
+    if starts < 1:
+        raise BadInput(f"--starts {starts}: wanted one or more")
+    records = [read(path, columns, unit, scale, resample) for path in paths]
+    held = read(heldout, columns, unit, scale, resample) if heldout is not None else None
+    folder = out_folder(out)
+    system: System | None = None
+    if model.endswith(".toml"):
+        system = load(model)
+        if inertia is not None:
+            raise BadInput("--inertia: the model file already states the inertia; give one of the two")
+    added = names(effects)
+    if system is not None:
+        system = add_effects(system, added)
+    with progress(as_json) as tell:
+        found = fit_records(
+            records, model=model if system is None else "joint", inertia=inertia, effects=added, system=system, heldout=held,
+            window=window, starts=starts, seed=seed, translational=translational, profile=profile, progress=tell,
+        )  # fmt: skip
+        deliver(found, folder, as_json, tell)
+
+
+def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, command: str = "fit") -> dict[str, Any]:
+    """Print a fit, and write result.json, model.toml and report.html into the folder."""
+    words = shlex.join(["jaxbacklash", *sys.argv[1:]])
+    result = as_json(found, command=command, command_line=words, version=__version__)
+    text = json_text(result)
+    if folder is not None:
+        tell("drawing the report", 0.95)
+        write_text(folder / "result.json", text)
+        heading = f"{found.records[0].summary()}\n{result['verdict_text']}"
+        write_text(
+            folder / "model.toml",
+            dump(found.system, translational=found.translational, per_inertia=found.per_inertia, heading=heading),
+        )
+        fit_report(found, result, folder / "report.html")
+    if machine:
+        sys.stdout.write(text)
+    else:
+        print(found)
+        if folder is not None:
+            print(f"written: {folder}/result.json, model.toml, report.html")
+    return result

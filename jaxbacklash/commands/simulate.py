@@ -1,0 +1,129 @@
+"""``jaxbacklash simulate``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import BadInput, NoAnswer
+from ..excitation import AbstractExcitation, Chirp, Harmonic, Multisine, Rest, SteppedSine
+from ..model_file import load
+from ..records import read_record, write_record
+from ..simulation import as_record, measured_base
+from ..simulation import simulate as run_system
+from .common import json_text
+
+WANTED = {
+    "harmonic": ("amplitude", "frequency"),
+    "chirp": ("amplitude", "f0", "f1"),
+    "multisine": ("amplitude", "low", "high", "lines"),
+    "stepped": ("amplitude", "low", "high", "steps"),
+    "rest": (),
+}
+OPTIONAL = {"chirp": {"corner": 1e9}, "harmonic": {"phase": 0.0}}
+
+
+def run(
+    model: Path,
+    *,
+    out: Path,
+    excitation: str,
+    as_force: bool,
+    duration: float,
+    rate: float,
+    noise: float,
+    y0: float | None,
+    dy0: float | None,
+    as_json: bool,
+    seed: int,
+) -> None:
+    """Simulate, add noise, write the record."""
+    for option, value, top in (("--duration", duration, 1e5), ("--rate", rate, 1e6)):
+        if not 0.0 < value <= top:
+            raise BadInput(f"{option} {value:g}: wanted a number above 0 and up to {top:g}")
+    if noise < 0.0:
+        raise BadInput(f"--noise {noise:g}: wanted a standard deviation, zero or more")
+    system = load(model)
+    rng = np.random.default_rng(seed)
+    drive, t0, duration = parse_excitation(excitation, as_force, duration, rng)
+    path = run_system(system, drive, duration=duration, rate=rate, y0=y0, dy0=dy0, t0=t0)
+    if not np.all(np.isfinite(np.asarray(path.observed))):
+        raise NoAnswer(f"{model}: the simulated motion grows without bound; are the signs of its effects right?")
+    record = as_record(path, system, path=str(out))
+    if noise:
+        moved = {
+            name: values + noise * rng.standard_normal(values.size)
+            for name, values in record.channels.items()
+            if name in ("x", "y", "z")
+        }
+        record = record.replace(**moved)
+    write_record(record, out)
+    if as_json:
+        answer = {"schema": 1, "command": "simulate", "out": str(out), "samples": record.samples, "rate_hz": record.rate_hz}
+        sys.stdout.write(json_text(answer | {"channels": ["t", *record.channels]}))
+    else:
+        print(record.summary())
+
+
+def parse_excitation(
+    text: str, as_force: bool, duration: float, rng: np.random.Generator
+) -> tuple[AbstractExcitation, float, float]:
+    """The excitation that ``--excitation`` names, its start time and the duration to simulate [s].
+
+    Raises
+    ------
+    BadInput
+        An unknown kind, a missing or unknown entry, or a value that is no number.
+    """
+    kind, _, rest = text.partition(":")
+    if kind not in WANTED:
+        if Path(text).suffix:
+            record = read_record(text)
+            if record.input_name is None:
+                raise BadInput(f"--excitation {text}: the record has neither x nor F to drive with")
+            return measured_base(record), float(record.t[0]), float(record.t[-1] - record.t[0])
+        raise BadInput(f"--excitation {text}: wanted {', '.join(WANTED)} or the file of a record")
+    given: dict[str, float] = dict(OPTIONAL.get(kind, {}))
+    for part in filter(None, rest.split(",")):
+        name, _, value = part.partition("=")
+        if name not in WANTED[kind] and name not in OPTIONAL.get(kind, {}):
+            raise BadInput(f"--excitation {kind}: unknown entry {name!r}, wanted {', '.join(WANTED[kind])}")
+        try:
+            given[name] = float(value)
+        except ValueError:
+            raise BadInput(f"--excitation {kind}: {name} is {value!r}, wanted a number") from None
+        if not np.isfinite(given[name]):
+            raise BadInput(f"--excitation {kind}: {name} is {value}, wanted a finite number")
+    missing = [name for name in WANTED[kind] if name not in given]
+    if missing:
+        raise BadInput(f"--excitation {kind}: {missing[0]} is missing, wanted {kind}:" + ",".join(f"{n}=" for n in WANTED[kind]))
+    return _build(kind, given, as_force, duration, rng), 0.0, duration
+
+
+def _build(kind: str, p: dict[str, float], as_force: bool, duration: float, rng: np.random.Generator) -> AbstractExcitation:
+    if kind == "rest":
+        return Rest()
+    level = p["amplitude"]
+    if kind == "harmonic":
+        return Harmonic(_f(level), _f(2 * np.pi * p["frequency"]), _f(p["phase"]), as_force=as_force)
+    if kind == "chirp":
+        values = (level, p["f0"], p["f1"], duration, p["corner"])
+        return Chirp(*(_f(v) for v in values), as_force=as_force)
+    if not 0.0 < p["low"] < p["high"]:
+        raise BadInput(f"--excitation {kind}: low is {p['low']:g} and high {p['high']:g}, wanted 0 < low < high [Hz]")
+    if kind == "multisine":
+        count = max(1, round(p["lines"]))
+        omegas = 2 * np.pi * np.linspace(p["low"], p["high"], count)
+        amplitudes = np.full(count, level * np.sqrt(2.0 / count))
+        return Multisine(amplitudes, omegas, rng.uniform(0, 2 * np.pi, count), as_force=as_force)
+    count = max(2, round(p["steps"]))
+    return SteppedSine(
+        np.full(count, level), np.linspace(p["low"], p["high"], count), _f(duration / count), as_force=as_force
+    )
+
+
+def _f(value: float) -> Any:
+    return np.asarray(float(value))

@@ -1,0 +1,67 @@
+"""A given model beside a record: how far off, where, and whether noise alone would do that."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput
+from ..records import Record
+from ..signals import noise_level
+from ..system import System
+from .fit import ADEQUATE, SCORE_WINDOW, predict_record
+from .score import Score
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A model's windowed prediction of a record; ``noise`` std of the observed channel, in its unit."""
+
+    system: System
+    record: Record
+    score: Score
+    noise: float
+    translational: bool
+
+    @property
+    def adequate(self) -> bool:
+        """True when what the model leaves is noise."""
+        return self.score.median < 1.15 and self.score.rms < 2.0 * ADEQUATE
+
+    def sentence(self) -> str:
+        """The comparison in one or two sentences."""
+        s = self.score
+        if self.adequate:
+            return f"The model predicts this record to its noise: {s.rms:.3g} times the noise, median window {s.median:.3g}."
+        worst = s.window_times[int(np.nanargmax(s.window_rms))]
+        return (
+            f"The model misses this record by {s.rms:.3g} times the noise (median window {s.median:.3g}); "
+            f"the worst window begins at {worst:.2f} s."
+        )
+
+    def __str__(self) -> str:
+        unit = "m" if self.translational else "rad"
+        name = self.record.observed_name
+        return "\n".join([self.record.summary(), f"  noise of {name} {self.noise:.3g} {unit}", self.sentence()])
+
+
+def compare(system: System, record: Record, *, window: float = SCORE_WINDOW, translational: bool = False) -> Comparison:
+    """Predict a record window by window with a model's parameters as they are.
+
+    Raises
+    ------
+    BadInput
+        The record does not hold the channel that the model observes.
+    """
+    if record.observed_name != system.observed:
+        if {record.observed_name, system.observed} == {"z", "y"}:
+            # The same motion seen from the base or from the ground: the record decides.
+            system = System(system.inertia, system.contact, system.damper, system.effects, record.observed_name)
+        else:
+            raise BadInput(
+                f"{record.path}: measures {record.observed_name}, but the model predicts {system.observed}; "
+                f"wanted a record with {system.observed}"
+            )
+    noise = noise_level(record.t, record.channels[record.observed_name])
+    return Comparison(system, record, predict_record(system, record, window=window), noise, translational)

@@ -1,0 +1,1 @@
+"""Pictures and the page. Import the file you need: figures bring matplotlib, which ``--json`` alone should not wait for."""

@@ -1,0 +1,123 @@
+"""Making a Figure without touching anyone's matplotlib settings, and turning it into text for a page.
+
+Figures are built from `matplotlib.figure.Figure` alone. On paper they are dark on white; inside an SVG everything drawn in
+`style.INK` takes the colour of the surrounding text and the background is clear, so one drawing serves light and dark pages.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import wraps
+from typing import Any, TypeVar
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .style import INK, WIDTH
+
+Draw = TypeVar("Draw", bound=Callable[..., Figure])
+
+SETTINGS: dict[str, Any] = {
+    "font.family": ["DejaVu Sans"],
+    "font.size": 9.0,
+    "axes.titlesize": 9.0,
+    "axes.titlelocation": "left",
+    "axes.labelsize": 9.0,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "legend.fontsize": 8.0,
+    "legend.frameon": False,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.axisbelow": True,
+    "axes.grid": True,
+    "grid.alpha": 0.12,
+    "grid.linewidth": 0.6,
+    "axes.linewidth": 0.7,
+    "axes.formatter.limits": (-4, 5),
+    "lines.linewidth": 1.1,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "jaxbacklash",
+    "path.simplify": True,
+    "path.simplify_threshold": 0.2,
+    "agg.path.chunksize": 20000,
+    **dict.fromkeys(
+        ["text.color", "axes.edgecolor", "axes.labelcolor", "axes.titlecolor", "xtick.color", "ytick.color", "grid.color"], INK
+    ),
+}
+RASTER_DPI = 170
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """The look of all figures, for as long as one is built or written."""
+    with matplotlib.rc_context(SETTINGS):
+        yield
+
+
+def drawn_in_style(draw: Draw) -> Draw:
+    """Decorate a function that returns a Figure so that it draws in this look."""
+
+    @wraps(draw)
+    def inside(*args: Any, **keywords: Any) -> Figure:
+        with styled():
+            return draw(*args, **keywords)
+
+    return inside  # type: ignore[return-value]
+
+
+def new_figure(height: float) -> Figure:
+    """An empty figure as wide as a page, ``height`` inches tall."""
+    return Figure(figsize=(WIDTH, height), layout="constrained", facecolor="white")
+
+
+def empty_figure(sentence: str) -> Figure:
+    """What stands in for a picture of nothing."""
+    figure = new_figure(1.2)
+    figure.text(0.5, 0.5, sentence, ha="center", va="center", color=INK)
+    return figure
+
+
+def column(values: Any) -> np.ndarray:
+    """Any sequence as a flat array of floats; None gives an empty one."""
+    return np.zeros(0) if values is None else np.asarray(values, dtype=float).ravel()
+
+
+def in_degrees(ax: Axes, side: str, unit: str) -> None:
+    """A second scale in degrees on an axis that is in radians; nothing for any other unit."""
+    if unit != "rad":
+        return
+    add = ax.secondary_xaxis if side in ("top", "bottom") else ax.secondary_yaxis
+    scale = add(side, functions=(np.degrees, np.radians))  # type: ignore[arg-type]
+    (scale.set_xlabel if side in ("top", "bottom") else scale.set_ylabel)("deg", fontsize=8.0)
+    scale.spines[:].set_visible(False)
+    scale.tick_params(labelsize=7.0, length=2.0)
+
+
+def to_svg(figure: Figure) -> str:
+    """A figure as one ``<svg>`` element: text stays text, ink is ``currentColor``, the background is clear."""
+    buffer = io.StringIO()
+    nothing = dict.fromkeys(["Date", "Creator", "Format", "Type"])
+    with styled():
+        figure.savefig(buffer, format="svg", transparent=True, dpi=RASTER_DPI, metadata=nothing)
+    text = buffer.getvalue()
+    text = text[text.index("<svg") :]
+    text = re.sub(r"<metadata>.*?</metadata>\s*", "", text, flags=re.DOTALL)
+    text = text.replace("image-rendering:crisp-edges;image-rendering:pixelated", "")  # thin curves would tear when scaled
+    # Wherever matplotlib's own face is missing, the next one must be as wide or labels would run into one another.
+    text = text.replace("'DejaVu Sans'", "'DejaVu Sans', Verdana, sans-serif")
+    return text.replace(INK, "currentColor").strip()
+
+
+def to_png_data_uri(figure: Figure, dpi: float = 150.0) -> str:
+    """A figure on white as a ``data:`` address, for places that take no SVG."""
+    buffer = io.BytesIO()
+    with styled():
+        figure.savefig(buffer, format="png", dpi=dpi, facecolor="white")
+    return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")

@@ -1,0 +1,11 @@
+"""The figures of a report. Each takes arrays or entries of result.json and returns a `matplotlib.figure.Figure`."""
+
+from .drawing import to_png_data_uri as to_png_data_uri
+from .drawing import to_svg as to_svg
+from .figures_joint import phase_plane as phase_plane
+from .figures_joint import restoring_force as restoring_force
+from .figures_model import candidate_ranking as candidate_ranking
+from .figures_model import error_by_stage as error_by_stage
+from .figures_model import misfit_profile as misfit_profile
+from .figures_time import measured_against_model as measured_against_model
+from .figures_time import residual_in_time as residual_in_time

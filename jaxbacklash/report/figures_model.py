@@ -1,0 +1,192 @@
+"""Figures of models: the error falling stage by stage, what each absent effect would bring, where the misfit lies."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from .drawing import column, drawn_in_style, empty_figure, new_figure
+from .style import GAP, HELDOUT, INK, MEASURED, MODEL, SHORT, format_evidence, is_number, short
+
+MOST_BARS = 12
+
+
+@drawn_in_style
+def error_by_stage(stages: Sequence[Mapping[str, Any]]) -> Figure:
+    """Prediction error over noise, model by model, on the record and on the held-out one.
+
+    Parameters
+    ----------
+    stages : entries of ``stages`` in result.json; ``rms_over_noise`` and ``heldout_rms_over_noise`` may be null
+
+    Returns
+    -------
+    Figure
+    """
+    if not stages:
+        return empty_figure("No stages to draw.")
+    figure = new_figure(SHORT + 0.3)
+    ax = figure.subplots()
+    at = np.arange(len(stages), dtype=float)
+    shown = [("rms_over_noise", "this record", MEASURED), ("heldout_rms_over_noise", "held-out record", HELDOUT)]
+    shown = [entry for entry in shown if any(is_number(stage.get(entry[0])) for stage in stages)]
+    reach = [1.0]
+    width = 0.56 / max(len(shown), 1)
+    for number, (key, name, colour) in enumerate(shown):
+        values = np.array([float(s[key]) if is_number(s.get(key)) and s[key] > 0 else np.nan for s in stages])
+        place = at + width * (number - 0.5 * (len(shown) - 1))
+        reach += values[np.isfinite(values)].tolist()
+        # Bars stand on the noise, so that their height is what there is to gain.
+        ax.bar(place, values - 1.0, bottom=1.0, width=0.94 * width, color=colour, lw=0, label=name)
+        for x, value in zip(place, values):
+            if np.isfinite(value):
+                ax.annotate(short(value), (x, max(value, 1.0)), xytext=(0, 2), textcoords="offset points",
+                            ha="center", va="bottom")  # fmt: skip
+    ax.axhline(1.0, color=INK, lw=0.9, label="1: noise alone")
+    readable_log(ax, "y", min(0.85, 0.95 * min(reach)), max(1.6, max(reach) ** 1.12 * 1.1))
+    middle, half = 0.5 * (len(stages) - 1), 0.5 * max(len(stages), 3)
+    ax.set(xlim=(middle - half, middle + half), ylabel="rms over noise")
+    ax.set_xticks(at, [stage_name(stage, number) for number, stage in enumerate(stages)])
+    ax.tick_params(axis="x", length=0)
+    ax.spines["bottom"].set_visible(False)
+    ax.grid(False, axis="x")
+    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2)
+    return figure
+
+
+@drawn_in_style
+def candidate_ranking(candidates: Sequence[Mapping[str, Any]], *, current: float | None = None) -> Figure:
+    """What the error would become with each absent effect added, best first.
+
+    Parameters
+    ----------
+    candidates : entries of ``candidates`` in result.json: ``name``, ``predicted_rms_over_noise``, ``evidence``
+    current : rms over noise of the model as it is, drawn as a line
+
+    Returns
+    -------
+    Figure
+    """
+    kept = list(candidates)[:MOST_BARS]
+    if not kept:
+        return empty_figure("No effect was left to try.")
+    figure = new_figure(0.9 + 0.27 * len(kept))
+    ax = figure.subplots()
+    at = np.arange(len(kept))
+    values = [entry.get("predicted_rms_over_noise") for entry in kept]
+    known = [float(value) for value in values if is_number(value) and value > 0]
+    highest = max([*known, current if is_number(current) and current else 1.0, 1.5])
+    spread = highest > 8.0
+    lowest = min([*known, 0.8]) * 0.9 if spread else 0.0
+    for place, (entry, value) in enumerate(zip(kept, values)):
+        if is_number(value):
+            ax.barh(place, float(value) - lowest, left=lowest, height=0.62, color=MODEL if place == 0 else GAP, lw=0)
+        else:
+            ax.annotate(str(entry.get("why") or "not evaluated"), (0.0, place), xycoords=("axes fraction", "data"),
+                        xytext=(4, 0), textcoords="offset points", va="center", fontsize=8)  # fmt: skip
+    _column(ax, 46, "rms", [short(value) for value in values])
+    if any(is_number(entry.get("evidence")) for entry in kept):
+        _column(ax, 98, "evidence", [format_evidence(entry.get("evidence")) for entry in kept])
+    ax.set_yticks(at, [str(entry.get("name", "?")) for entry in kept])
+    hidden = len(candidates) - len(kept)
+    more = f"; the best {len(kept)} of {len(candidates)}" if hidden else ""
+    ax.set(ylim=(len(kept) - 0.4, -0.6), xlabel=f"predicted rms over noise with the effect added{more}")
+    if spread:
+        readable_log(ax, "x", lowest, highest * 1.05)
+    else:
+        ax.set_xlim(0.0, highest * 1.03)
+    ax.axvline(1.0, color=INK, lw=0.8, ls="--")
+    _above(ax, 1.0, "noise", INK)
+    if is_number(current):
+        assert current is not None
+        ax.axvline(current, color=MEASURED, lw=1.2)
+        if current > 1.25:
+            _above(ax, current, "now", MEASURED)
+    ax.grid(False, axis="y")
+    ax.tick_params(axis="y", length=0)
+    return figure
+
+
+@drawn_in_style
+def misfit_profile(bins: Any, values: Any, counts: Any, *, xlabel: str) -> Figure:
+    """Misfit in units of the noise against whatever it may depend on, and how many samples each bin rests on.
+
+    Parameters
+    ----------
+    bins : (K + 1,) edges, or (K,) centres, of the coordinate
+    values : (K,) root mean square of the residual over noise in each bin [1]; NaN where nothing falls
+    counts : (K,) samples in each bin
+    xlabel : the coordinate with its unit, ``"z′ [rad/s]"``
+
+    Returns
+    -------
+    Figure
+    """
+    bins, values, counts = column(bins), column(values), column(counts)
+    if not values.size or not np.any(np.isfinite(values)):
+        return empty_figure("No misfit to draw.")
+    if bins.size == values.size:
+        bins = _edges(bins)
+    figure = new_figure(SHORT)
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
+    upper.stairs(values, bins, baseline=None, color=MODEL, lw=1.4)
+    upper.axhline(1.0, color=INK, lw=0.8, ls="--", label="1: noise alone")
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    if high > 10.0 * max(low, 1.0):
+        readable_log(upper, "y", min(0.8, max(low, 0.05) * 0.8), high * 1.4)
+    else:
+        upper.set_ylim(0.0, 1.25 * max(high, 1.5))
+    upper.legend(loc="best")
+    upper.set_ylabel("rms over noise")
+    if counts.size == values.size:
+        lower.stairs(counts, bins, fill=True, color=GAP, alpha=0.6, lw=0)
+    lower.set(xlabel=xlabel, ylabel="samples", xlim=(bins[0], bins[-1]))
+    return figure
+
+
+def stage_name(stage: Mapping[str, Any], number: int) -> str:
+    """What a stage did, short enough for an axis: ``base model``, ``+ gravity``, ``− preload``."""
+    added, dropped = stage.get("added"), stage.get("dropped")
+    parts = [f"{sign} {name}" for sign, name in (("+", added), ("−", dropped)) if name]
+    text = "\n".join(parts) or ("base model" if number == 0 else "fitted again")
+    return text.replace("_", "_\n", 1) if len(text) > 14 else text
+
+
+def readable_log(ax: Axes, axis: str, low: float, high: float) -> None:
+    """A logarithmic axis from ``low`` to ``high`` with plain numbers at 1, 2, 5 of each decade, thinned when it is long."""
+    steps = (1, 2, 5) if high / low < 200.0 else (1,)
+    powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    ticks = [step * 10.0**power for power in powers for step in steps]
+    ticks = [tick for tick in ticks if low <= tick <= high]
+    if axis == "y":
+        ax.set(yscale="log", ylim=(low, high))
+        ax.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
+    else:
+        ax.set(xscale="log", xlim=(low, high))
+        ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    (ax.yaxis if axis == "y" else ax.xaxis).set_minor_formatter(lambda *_: "")
+
+
+def _column(ax: Axes, offset: float, title: str, texts: list[str]) -> None:
+    """Numbers to the right of a plot, ``offset`` points from its edge, one a bar."""
+    place = {"textcoords": "offset points", "ha": "right", "fontsize": 8.0, "annotation_clip": False}
+    for row, text in enumerate(texts):
+        ax.annotate(text, (1.0, row), xycoords=("axes fraction", "data"), xytext=(offset, 0), va="center", **place)
+    ax.annotate(title, (1.0, 1.0), xycoords="axes fraction", xytext=(offset, 3), va="bottom", **place)
+
+
+def _above(ax: Axes, at: float, text: str, colour: str) -> None:
+    ax.annotate(text, (at, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 3), textcoords="offset points",
+                ha="center", va="bottom", fontsize=8.0, color=colour)  # fmt: skip
+
+
+def _edges(centres: np.ndarray) -> np.ndarray:
+    if centres.size == 1:
+        return np.array([centres[0] - 0.5, centres[0] + 0.5])
+    middle = 0.5 * (centres[1:] + centres[:-1])
+    return np.concatenate([[2 * centres[0] - middle[0]], middle, [2 * centres[-1] - middle[-1]]])

@@ -1,0 +1,134 @@
+"""One self-contained page: verdict first, then pictures with a sentence each, then the tables."""
+
+from __future__ import annotations
+
+import os
+import re
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup, escape
+
+from ..errors import BadInput
+from .series import series_json
+from .style import GAP, HELDOUT, MEASURED, MODEL
+from .summary import summarise
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One picture on the page.
+
+    Attributes: ``title`` a heading; ``sentence`` what to see in it; ``figure_svg`` from `figures.to_svg`, or an address from
+    `figures.to_png_data_uri`; ``anchor`` its name in links; ``detail`` more words behind a fold.
+    """
+
+    title: str
+    sentence: str
+    figure_svg: str
+    anchor: str
+    detail: str | None = None
+
+
+def render(result: Mapping[str, Any], figures: Sequence[Panel], series: Mapping[str, Any] | None = None) -> str:
+    """The page as text.
+
+    Parameters
+    ----------
+    result : result.json of ``fit``, ``refine`` or ``compare``; whatever is missing or null is left out or says why
+    figures : pictures in reading order
+    series : ``t``, ``measured``, ``model``, ``residual_over_noise`` (N,) for the zoomable view, and optionally ``window_starts``,
+        ``label`` and ``unit`` (see `series.series_json`); None: no such view
+
+    Returns
+    -------
+    HTML that needs no network; every text of the result is escaped
+    """
+    taken: set[str] = set()
+    panels = []
+    for panel in figures:
+        anchor = _anchor(panel.anchor or panel.title, taken)
+        panels.append({"panel": panel, "anchor": anchor, "picture": _picture(panel, anchor)})
+    colours = {"measured": MEASURED, "model": MODEL, "heldout": HELDOUT, "gap": GAP}
+    data = None if series is None else Markup(series_json(series))
+    return _template().render(**summarise(result), panels=panels, series=data, colours=colours)
+
+
+def write_report(
+    path: str | os.PathLike[str],
+    result: Mapping[str, Any],
+    figures: Sequence[Panel],
+    series: Mapping[str, Any] | None = None,
+) -> Path:
+    """Write the page whole or not at all; arguments as in `render`.
+
+    Returns
+    -------
+    where it was written
+
+    Raises
+    ------
+    BadInput
+        The folder is missing or cannot be written.
+    """
+    target = Path(path)
+    text = render(result, figures, series)
+    part = None
+    try:
+        with tempfile.NamedTemporaryFile(
+            "w", encoding="utf-8", dir=target.parent, prefix=f".{target.name}.", delete=False
+        ) as file:
+            part = Path(file.name)
+            file.write(text)
+        part.chmod(0o644)  # a temporary file begins readable by its owner alone
+        part.replace(target)
+    except OSError as error:
+        if part is not None:
+            part.unlink(missing_ok=True)
+        raise BadInput(f"{target}: the report cannot be written ({error.strerror}), wanted a folder to write into") from None
+    return target
+
+
+@cache
+def _template() -> Any:
+    environment = Environment(
+        loader=PackageLoader("jaxbacklash.report"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("report.html.j2")
+
+
+def _anchor(wanted: str, taken: set[str]) -> str:
+    """A name fit for an id that no other panel has."""
+    plain = re.sub(r"[^a-z0-9]+", "-", wanted.lower()).strip("-") or "figure"
+    name, count = f"figure-{plain}", 2
+    while name in taken:
+        name, count = f"figure-{plain}-{count}", count + 1
+    taken.add(name)
+    return name
+
+
+def _picture(panel: Panel, anchor: str) -> Markup:
+    """The drawing as it stands in the page: described for those who cannot see it, its ids unlike any other drawing's."""
+    words = escape(f"{panel.title}. {panel.sentence}")
+    text = panel.figure_svg.strip()
+    if text.startswith("data:image/"):
+        return Markup('<img class="paper" src="{}" alt="{}">').format(text, words)
+    found = re.match(r"<svg\b[^>]*>", text)
+    if not found:
+        raise ValueError(f"panel {panel.title!r}: figure_svg must be an <svg> element or a data:image address")
+    box = re.search(r'viewBox="([^"]*)"', found.group(0))
+    head = f'<svg role="img" aria-label="{words}"' + (f' viewBox="{escape(box.group(1))}">' if box else ">")
+    body = text[found.end() :].replace("xlink:href=", "href=")
+    body = re.sub(r'\bid="([^"]+)"', rf'id="{anchor}-\1"', body)
+    body = re.sub(r'href="#([^"]+)"', rf'href="#{anchor}-\1"', body)
+    body = re.sub(r"url\(#([^)]+)\)", rf"url(#{anchor}-\1)", body)
+    return Markup(head + body)
