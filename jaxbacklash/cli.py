@@ -21,6 +21,7 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,
 )
 
 Columns = Annotated[list[str] | None, typer.Option("--columns", help="Other column names: t=time_s,x=enc1,z=enc2")]
@@ -161,9 +162,11 @@ def main() -> None:
     except BrokenPipeError:
         sys.exit(1)
     except Exception as error:
-        if hasattr(error, "format_message"):  # a wrong word on the command line, told by the parser
-            sys.exit(_say(f"error: {' '.join(error.format_message().split())}", 2))
-        raise
+        if not hasattr(error, "format_message"):
+            raise
+        # A wrong word on the command line, told by the parser; without any word it has just shown the help.
+        sentence = " ".join(error.format_message().split())
+        sys.exit(_say(f"error: {sentence}", 2) if len(sys.argv) > 1 else 2)
 
 
 def _say(sentence: str, code: int) -> int:

@@ -64,7 +64,7 @@ class System(eqx.Module):
         it the region follows from z and the corner is smoothed over ``contact.width``.
         """
         now = self.instant(t, state, drive, side)
-        torque, _ = self._torques(now, state)
+        torque, _ = self.torques(now, state)
         hidden = tuple(
             r for name, own in self._own_states(state) for r in self.effects[name].rate(now.seen_by(own))
         )
@@ -72,7 +72,7 @@ class System(eqx.Module):
 
     def transmitted(self, t: Scalar, state: State, drive: Drive, side: Scalar | None = None) -> Scalar:
         """Torque the link exerts on its base through the joint [N m]."""
-        _, joint = self._torques(self.instant(t, state, drive, side), state)
+        _, joint = self.torques(self.instant(t, state, drive, side), state)
         return -joint
 
     def output(self, t: Scalar, state: State, drive: Drive) -> Scalar:
@@ -105,6 +105,19 @@ class System(eqx.Module):
         stiffness = jnp.zeros_like(z) if self.contact is None else self.contact.stiffness
         return Instant(t, y, dy, drive.x, drive.dx, z, dz, deflection, contact, stiffness, self.inertia)
 
+    def torques(self, now: Instant, state: State) -> tuple[Scalar, Scalar]:
+        """All torque on the link but the driving force, and the part of it that acts through the joint [N m]."""
+        joint: Any = -now.stiffness * now.deflection - self.damper.damping * now.dz
+        ground: Any = 0.0
+        for name, own in self._own_states(state):
+            effect = self.effects[name]
+            torque = effect.torque(now.seen_by(own))
+            if effect.port == "joint":
+                joint = joint + torque
+            else:
+                ground = ground + torque
+        return joint + ground, joint
+
     def _play(self, t: Scalar) -> Play:
         assert isinstance(self.contact, Contact)
         play = Play(self.contact.backlash)
@@ -133,15 +146,3 @@ class System(eqx.Module):
             own.append((name, state[at : at + count]))
             at += count
         return own
-
-    def _torques(self, now: Instant, state: State) -> tuple[Scalar, Scalar]:
-        joint: Any = -now.stiffness * now.deflection - self.damper.damping * now.dz
-        ground: Any = 0.0
-        for name, own in self._own_states(state):
-            effect = self.effects[name]
-            torque = effect.torque(now.seen_by(own))
-            if effect.port == "joint":
-                joint = joint + torque
-            else:
-                ground = ground + torque
-        return joint + ground, joint

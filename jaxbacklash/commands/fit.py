@@ -15,7 +15,7 @@ from ..fitting import fit as fit_records
 from ..fitting.setup import add_effects
 from ..model_file import dump, load
 from ..report.fit_report import fit_report
-from ..report.result import as_json
+from ..report.result import as_json as result_of
 from ..system import System
 from .common import json_text, names, out_folder, progress, read, write_text
 
@@ -63,10 +63,10 @@ def run(
         deliver(found, folder, as_json, tell)
 
 
-def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, command: str = "fit") -> dict[str, Any]:
-    """Print a fit, and write result.json, model.toml and report.html into the folder."""
+def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, *, silent: bool = False) -> None:
+    """Print a fit, unless silent, and write result.json, model.toml and report.html into the folder."""
     words = shlex.join(["jaxbacklash", *sys.argv[1:]])
-    result = as_json(found, command=command, command_line=words, version=__version__)
+    result = result_of(found, command="fit", command_line=words, version=__version__)
     text = json_text(result)
     if folder is not None:
         tell("drawing the report", 0.95)
@@ -79,8 +79,7 @@ def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, command: 
         fit_report(found, result, folder / "report.html")
     if machine:
         sys.stdout.write(text)
-    else:
+    elif not silent:
         print(found)
         if folder is not None:
             print(f"written: {folder}/result.json, model.toml, report.html")
-    return result

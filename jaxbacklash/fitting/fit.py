@@ -147,7 +147,7 @@ def fit(
     problem, unknowns = found.problem, found.unknowns
     fitted = with_values(system, dict(zip(values(system), np.asarray(problem.parameters(unknowns.theta)))))
 
-    scored = [score(problem, unknowns, layout, group=group, record=i)[0] for i in range(len(chosen))]
+    scored, _ = score(problem, unknowns, layout, group=group)
     held = predict_record(fitted, heldout, window=window, free=names) if heldout is not None else None
     clock["score"] = time.perf_counter()
 
@@ -160,7 +160,7 @@ def fit(
         estimates = with_profiles(problem, unknowns, estimates, names, stderr, progress)
     marks = list(clock.items())
     return Fit(
-        fitted, names, estimates, tuple(scored), held, chosen, layout.noise, layout.input_noise, covariance,
+        fitted, names, estimates, scored, held, chosen, layout.noise, layout.input_noise, covariance,
         found.agreeing, found.tried, found.tied, found.cost, found.steps, start, model, per_inertia, translational,
         {name: at - before for (_, before), (name, at) in zip(marks, marks[1:])}, problem, unknowns,
     )  # fmt: skip
@@ -233,7 +233,7 @@ def search(
         solution = minimise(joined, best.value, solver)
         after = float(solution.stats["state"].blocks.cost)
         # Tied windows may disagree where a chaotic record and a slightly wrong model part ways; then they stay apart.
-        tied = np.sqrt(2.0 * after / _freedom(solution.value, windows)) < ADEQUATE
+        tied = bool(np.sqrt(2.0 * after / _freedom(solution.value, windows)) < ADEQUATE)
         if tied:
             best, problem, cost = solution, joined, after
             steps += int(solution.stats["state"].steps)
@@ -252,7 +252,7 @@ def predict_record(
     require_double_precision("predict_record")
     windows, layout, group = prepare(system, [record], window)
     problem = make_problem(system, windows, free_names(system) if free is None else free)
-    return score(problem, first_guess(problem), layout, group=group)[0]
+    return score(problem, first_guess(problem), layout, group=group)[0][0]
 
 
 def _freedom(unknowns: Unknowns, windows: Windows) -> float:

@@ -46,7 +46,7 @@ def frozen(problem: Problem, theta: Any) -> Problem:
     )
 
 
-def score(problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 2, record: int = 0) -> tuple[Score, Unknowns]:
+def score(problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 2) -> tuple[tuple[Score, ...], Unknowns]:
     """Score the parameters of ``unknowns`` on all windows.
 
     Parameters
@@ -55,11 +55,10 @@ def score(problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 
     unknowns : parameters to judge, and starts near the right ones
     layout : where each record sits
     group : shooting windows per score window
-    record : which record the score is reported for
 
     Returns
     -------
-    the score, and the unknowns with the window starts re-estimated
+    one score per record, and the unknowns with the window starts re-estimated
     """
     still = frozen(problem, unknowns.theta)
     tie = np.asarray(problem.windows.tie).copy()
@@ -71,9 +70,8 @@ def score(problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 
     solution = minimise(still, begin, ArrowLevenbergMarquardt(atol=1e-2))
     found = solution.value
     predicted = solution.stats["state"].predicted
-    return _summarise(still, found, predicted, layout, group, record), Unknowns(
-        unknowns.theta, found.starts, found.coefficients
-    )
+    scores = tuple(_summarise(still, found, predicted, layout, group, i) for i in range(len(layout.first)))
+    return scores, Unknowns(unknowns.theta, found.starts, found.coefficients)
 
 
 def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout, group: int, record: int) -> Score:

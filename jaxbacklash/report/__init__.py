@@ -1,1 +1,4 @@
-"""Pictures and the page. Import the file you need: figures bring matplotlib, which ``--json`` alone should not wait for."""
+"""Pictures and the page.
+
+Import the file you need: figures bring matplotlib, for which ``--json`` alone should not wait.
+"""

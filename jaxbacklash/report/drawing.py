@@ -1,13 +1,15 @@
 """Making a Figure without touching anyone's matplotlib settings, and turning it into text for a page.
 
-Figures are built from `matplotlib.figure.Figure` alone. On paper they are dark on white; inside an SVG everything drawn in
-`style.INK` takes the colour of the surrounding text and the background is clear, so one drawing serves light and dark pages.
+Figures are built from `matplotlib.figure.Figure` alone. On paper they are dark on white; inside an SVG everything drawn
+in `style.INK` takes the colour of the surrounding text and the background is clear, so that one drawing serves light
+and dark pages.
 """
 
 from __future__ import annotations
 
 import base64
 import io
+import math
 import re
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -18,12 +20,14 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from .style import INK, WIDTH
 
 Draw = TypeVar("Draw", bound=Callable[..., Figure])
 
-SETTINGS: dict[str, Any] = {
+INKED = ("text", "axes.edge", "axes.label", "axes.title", "xtick", "ytick", "grid")
+SETTINGS: Any = {
     "font.family": ["DejaVu Sans"],
     "font.size": 9.0,
     "axes.titlesize": 9.0,
@@ -47,9 +51,8 @@ SETTINGS: dict[str, Any] = {
     "path.simplify": True,
     "path.simplify_threshold": 0.2,
     "agg.path.chunksize": 20000,
-    **dict.fromkeys(
-        ["text.color", "axes.edgecolor", "axes.labelcolor", "axes.titlecolor", "xtick.color", "ytick.color", "grid.color"], INK
-    ),
+    "text.parse_math": False,  # a name with dollar signs is a name
+    **{name + ("color" if name.count(".") else ".color"): INK for name in INKED},
 }
 RASTER_DPI = 170
 
@@ -100,6 +103,21 @@ def in_degrees(ax: Axes, side: str, unit: str) -> None:
     scale.tick_params(labelsize=7.0, length=2.0)
 
 
+def readable_log(ax: Axes, axis: str, low: float, high: float) -> None:
+    """A logarithmic axis with plain numbers at 1, 2, 5 of each decade, or at decades alone when it is long."""
+    steps = (1, 2, 5) if high / low < 200.0 else (1,)
+    powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    ticks = [step * 10.0**power for power in powers for step in steps]
+    ticks = [tick for tick in ticks if low <= tick <= high]
+    if axis == "y":
+        ax.set(yscale="log", ylim=(low, high))
+        ax.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
+    else:
+        ax.set(xscale="log", xlim=(low, high))
+        ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    (ax.yaxis if axis == "y" else ax.xaxis).set_minor_formatter(NullFormatter())
+
+
 def to_svg(figure: Figure) -> str:
     """A figure as one ``<svg>`` element: text stays text, ink is ``currentColor``, the background is clear."""
     buffer = io.StringIO()
@@ -109,7 +127,8 @@ def to_svg(figure: Figure) -> str:
     text = buffer.getvalue()
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>\s*", "", text, flags=re.DOTALL)
-    text = text.replace("image-rendering:crisp-edges;image-rendering:pixelated", "")  # thin curves would tear when scaled
+    # Thin curves would tear if their pixels were kept square when scaled.
+    text = text.replace("image-rendering:crisp-edges;image-rendering:pixelated", "")
     # Wherever matplotlib's own face is missing, the next one must be as wide or labels would run into one another.
     text = text.replace("'DejaVu Sans'", "'DejaVu Sans', Verdana, sans-serif")
     return text.replace(INK, "currentColor").strip()

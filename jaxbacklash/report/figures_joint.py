@@ -83,7 +83,7 @@ def restoring_force(
     z, torque_points : (N,) relative motion [length_unit] and the torque from smoothed acceleration [unit]
     model_z, model_torque : (M,) the model's law [length_unit], [unit]
     edges : lower and upper edge of the play [length_unit], or None when it was not found
-    unit, length_unit : ``"N m"`` and ``"rad"``, ``"rad/s^2"`` per unit inertia, ``"N"`` and ``"m"`` for a translating mass
+    unit, length_unit : ``"N m"`` and ``"rad"``; ``"rad/s^2"`` per unit inertia; ``"N"``, ``"m"`` of a translating mass
     label : what the torque is
 
     Returns
@@ -97,10 +97,9 @@ def restoring_force(
     figure = new_figure(MEDIUM)
     ax = figure.subplots()
     thin = strided(z.size, POINTS)
-    dots = z[thin].size
-    ax.plot(
-        z[thin], points[thin], ".", color=MEASURED, ms=2.4, mew=0, alpha=0.5 if dots > 4000 else 0.7, rasterized=dots > 500
-    )
+    many = z[thin].size
+    opacity = 0.5 if many > 4000 else 0.7
+    ax.plot(z[thin], points[thin], ".", color=MEASURED, ms=2.4, mew=0, alpha=opacity, rasterized=many > 500)
     # A proxy, since the legend of a faint dot would be invisible.
     ax.plot([], [], ".", color=MEASURED, ms=5, mew=0, label="measured, from smoothed acceleration")
     ax.plot(line_z, line, color=MODEL, lw=1.6, label="model")
@@ -144,7 +143,8 @@ def _play_text(play: tuple[float, float], unit: str) -> str:
 def _name_play(ax: Axes, play: tuple[float, float], unit: str) -> None:
     low, high = play
     place = ("data", "axes fraction")
-    ax.annotate("", (low, 0.05), (high, 0.05), xycoords=place, arrowprops={"arrowstyle": "<->", "color": INK, "lw": 0.8})
+    arrow = {"arrowstyle": "<->", "color": INK, "lw": 0.8}
+    ax.annotate("", (low, 0.05), (high, 0.05), xycoords=place, arrowprops=arrow)
     ax.annotate(
         _play_text(play, unit), (0.5 * (low + high), 0.065), xycoords=place, ha="center", va="bottom", fontsize=8.0
     )
@@ -168,7 +168,8 @@ def _density(
     fill = max(1, min(40, DENSE // across.size))
     at = np.arange(0, (across.size - 1) * fill + 1) / fill
     own = np.arange(across.size)
-    visits, _, _ = np.histogram2d(np.interp(at, own, across), np.interp(at, own, up), bins=(cells, CELLS[1]), range=widths)
+    fine = np.interp(at, own, across), np.interp(at, own, up)
+    visits, _, _ = np.histogram2d(*fine, bins=(cells, CELLS[1]), range=widths)
     if not visits.max() > 0.0:
         return
     # A palette of one hue whose opacity rises reads on white and on black, where light-to-dark would vanish on one.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -10,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .drawing import column, drawn_in_style, empty_figure, new_figure
+from .drawing import column, drawn_in_style, empty_figure, new_figure, readable_log
 from .style import GAP, HELDOUT, INK, MEASURED, MODEL, SHORT, format_evidence, is_number, short
 
 MOST_BARS = 12
@@ -78,7 +77,7 @@ def candidate_ranking(candidates: Sequence[Mapping[str, Any]], *, current: float
     figure = new_figure(0.9 + 0.27 * len(kept))
     ax = figure.subplots()
     at = np.arange(len(kept))
-    values = [entry.get("predicted_rms_over_noise") for entry in kept]
+    values: list[Any] = [entry.get("predicted_rms_over_noise") for entry in kept]
     known = [float(value) for value in values if is_number(value) and value > 0]
     highest = max([*known, current if is_number(current) and current else 1.0, 1.5])
     spread = highest > 8.0
@@ -157,24 +156,9 @@ def stage_name(stage: Mapping[str, Any], number: int) -> str:
     return text.replace("_", "_\n", 1) if len(text) > 14 else text
 
 
-def readable_log(ax: Axes, axis: str, low: float, high: float) -> None:
-    """A logarithmic axis from ``low`` to ``high`` with plain numbers at 1, 2, 5 of each decade, thinned when it is long."""
-    steps = (1, 2, 5) if high / low < 200.0 else (1,)
-    powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
-    ticks = [step * 10.0**power for power in powers for step in steps]
-    ticks = [tick for tick in ticks if low <= tick <= high]
-    if axis == "y":
-        ax.set(yscale="log", ylim=(low, high))
-        ax.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
-    else:
-        ax.set(xscale="log", xlim=(low, high))
-        ax.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
-    (ax.yaxis if axis == "y" else ax.xaxis).set_minor_formatter(lambda *_: "")
-
-
 def _column(ax: Axes, offset: float, title: str, texts: list[str]) -> None:
     """Numbers to the right of a plot, ``offset`` points from its edge, one a bar."""
-    place = {"textcoords": "offset points", "ha": "right", "fontsize": 8.0, "annotation_clip": False}
+    place: dict[str, Any] = {"textcoords": "offset points", "ha": "right", "fontsize": 8.0, "annotation_clip": False}
     for row, text in enumerate(texts):
         ax.annotate(text, (1.0, row), xycoords=("axes fraction", "data"), xytext=(offset, 0), va="center", **place)
     ax.annotate(title, (1.0, 1.0), xycoords="axes fraction", xytext=(offset, 3), va="bottom", **place)

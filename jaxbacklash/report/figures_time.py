@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -10,12 +11,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from .drawing import column, drawn_in_style, empty_figure, in_degrees, new_figure
+from .drawing import column, drawn_in_style, empty_figure, in_degrees, new_figure, readable_log
 from .style import GAP, INK, MEASURED, MODEL, SHORT, TALL, short, with_unit
 from .thinning import envelope
+from .zooms import stretch_around, window_bounds, window_misfit, worst_and_typical
 
-NEIGHBOURS = 2  # windows shown on either side of the one that a zoom is about
-LONGEST_ZOOM = 4000  # samples; beyond it dots would only be a smear
 HUGE = 30.0  # noise units from which a residual is drawn on a logarithmic scale
 
 
@@ -39,13 +39,11 @@ def measured_against_model(
     t, measured, model = column(t), column(measured), column(model)
     if t.size < 2:
         return empty_figure("No samples to draw.")
+    if not model.size:
+        model = np.full(t.size, np.nan)
     edges = window_bounds(t, window_starts)
-    misfit = _window_misfit(measured - model, edges)
-    # Without a noise level, or a misfit in any window, there is nothing to rank: show the record's own middle.
-    typical = worst = int(len(edges) // 2 - 1)
-    if np.any(np.isfinite(misfit)):
-        worst = int(np.nanargmax(misfit))
-        typical = int(np.nanargmin(np.abs(misfit - np.nanmedian(misfit))))
+    misfit = window_misfit(measured - model, edges)
+    worst, typical = worst_and_typical(misfit)
     figure = new_figure(TALL)
     grid = figure.add_gridspec(3, 2, height_ratios=(1.15, 1.5, 0.75))
     whole = figure.add_subplot(grid[0, :])
@@ -55,17 +53,19 @@ def measured_against_model(
     _legend(whole, noise)
     in_degrees(whole, "right", unit)
     for place, (index, name) in enumerate(((worst, "missed most"), (typical, "typical"))):
-        stretch = _around(index, edges)
+        stretch = stretch_around(index, edges)
         start, end = t[stretch][0], t[stretch][-1]
         whole.axvspan(start, end, color=GAP, alpha=0.35, lw=0)
         middle = np.clip(0.5 * (start + end), t[0] + 0.01 * (t[-1] - t[0]), t[-1] - 0.01 * (t[-1] - t[0]))
-        whole.annotate("AB"[place], (middle, 0.98), xycoords=("data", "axes fraction"), ha="center", va="top", weight="bold")
+        at = ("data", "axes fraction")
+        whole.annotate("AB"[place], (middle, 0.98), xycoords=at, ha="center", va="top", weight="bold")
         upper = figure.add_subplot(grid[1, place])
         lower = figure.add_subplot(grid[2, place], sharex=upper)
         local = [e - stretch.start for e in edges if stretch.start <= e <= stretch.stop]
         _zoom(upper, t[stretch], measured[stretch], model[stretch], local, noise)
         _left_over(lower, t[stretch], (measured - model)[stretch], local, noise, unit)
-        upper.set_title(f"{'AB'[place]}, {name}: {_how_far(misfit[index], noise, unit)}, window at {t[edges[index]]:.5g} s")
+        missed = _how_far(misfit[index], noise, unit)
+        upper.set_title(f"{'AB'[place]}, {name}: {missed}, window from {t[edges[index]]:.5g} s")
         upper.tick_params(labelbottom=False)
         if place == 0:
             upper.set_ylabel(with_unit(label, unit))
@@ -106,7 +106,7 @@ def residual_in_time(t: Any, residual_over_noise: Any, *, window_edges: Any, win
         top.fill_between(times, low, high, color=MEASURED, lw=0.4)
     if largest > HUGE:
         top.set_yscale("symlog", linthresh=3.0, linscale=0.8)
-        decades = 10.0 ** np.arange(1, np.ceil(np.log10(largest)) + 0.5)
+        decades = 10.0 ** np.arange(1, np.ceil(np.log10(largest)) + 0.5, 2 if largest > 1e4 else 1)
         top.set_yticks(np.concatenate([-decades[::-1], [-2, 0, 2], decades]))
         top.yaxis.set_major_formatter(lambda value, _: f"{value:g}".replace("-", "−"))
     reach = 1.15 * max(largest, 4.0)
@@ -116,32 +116,6 @@ def residual_in_time(t: Any, residual_over_noise: Any, *, window_edges: Any, win
     if rms.size:
         _window_steps(axes[1], t, column(window_edges), rms)
     return figure
-
-
-def window_bounds(t: np.ndarray, window_starts: Any) -> np.ndarray:
-    """Sample indices (K + 1,) at which windows begin, and the end; one window when no starts are given."""
-    starts = column(window_starts)
-    half = 0.5 * (t[1] - t[0])
-    inner = np.searchsorted(t, starts[np.isfinite(starts)] - half)
-    return np.unique(np.concatenate([[0], inner[inner < t.size], [t.size]]))
-
-
-def _window_misfit(difference: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    finite = np.isfinite(difference)
-    power = np.add.reduceat(np.where(finite, difference, 0.0) ** 2, edges[:-1])
-    count = np.add.reduceat(finite.astype(float), edges[:-1])
-    # A stump of a window at the end of the record would win by chance.
-    usable = count >= max(2.0, 0.5 * float(np.median(count)))
-    return np.where(usable, np.sqrt(power / np.maximum(count, 1.0)), np.nan)
-
-
-def _around(index: int, edges: np.ndarray) -> slice:
-    first = max(0, min(index - NEIGHBOURS, edges.size - 2 - 2 * NEIGHBOURS))
-    last = min(edges.size - 1, first + 2 * NEIGHBOURS + 1)
-    start, end = int(edges[first]), int(edges[last])
-    if end - start > LONGEST_ZOOM:
-        start, end = int(edges[index]), min(int(edges[index + 1]), int(edges[index]) + LONGEST_ZOOM)
-    return slice(start, max(end, start + 2))
 
 
 def _how_far(misfit: float, noise: float | None, unit: str) -> str:
@@ -171,15 +145,17 @@ def _overview(ax: Axes, t: np.ndarray, measured: np.ndarray, model: np.ndarray) 
 
 
 def _shade(ax: Axes, t: np.ndarray, edges: list[int]) -> None:
-    for start, end in list(zip(edges, edges[1:]))[::2]:
+    for start, end in list(pairwise(edges))[::2]:
         ax.axvspan(t[start], t[min(end, t.size - 1)], color=INK, alpha=0.06, lw=0)
 
 
-def _zoom(ax: Axes, t: np.ndarray, measured: np.ndarray, model: np.ndarray, edges: list[int], noise: float | None) -> None:
+def _zoom(
+    ax: Axes, t: np.ndarray, measured: np.ndarray, model: np.ndarray, edges: list[int], noise: float | None
+) -> None:
     _shade(ax, t, edges)
     many = t.size > 1500
     ax.plot(t, measured, "o", color=MEASURED, ms=2.6, mew=0, rasterized=many)
-    for start, end in zip(edges, edges[1:]):
+    for start, end in pairwise(edges):
         inside = slice(start, end)
         if noise:
             ax.fill_between(
@@ -213,8 +189,7 @@ def _window_steps(ax: Axes, t: np.ndarray, edges: np.ndarray, rms: np.ndarray) -
     ax.axhline(1.0, color=INK, lw=0.8, ls="--", label="1: all that is left is noise")
     known = rms[np.isfinite(rms)]
     if known.size and known.max() > HUGE / 3:
-        ax.set_yscale("log")
-        ax.yaxis.set_major_formatter(lambda value, _: f"{value:g}")
+        readable_log(ax, "y", 0.7 * min(1.0, known[known > 0.0].min()), 2.0 * known.max())
     else:
         ax.set_ylim(0.0, 1.3 * max(1.6, known.max(initial=0.0)))
     ax.set_ylabel("rms of each window\nover noise")

@@ -24,8 +24,8 @@ from .summary import summarise
 class Panel:
     """One picture on the page.
 
-    Attributes: ``title`` a heading; ``sentence`` what to see in it; ``figure_svg`` from `figures.to_svg`, or an address from
-    `figures.to_png_data_uri`; ``anchor`` its name in links; ``detail`` more words behind a fold.
+    Attributes: ``title`` a heading; ``sentence`` what to see in it; ``figure_svg`` from `figures.to_svg`, or an address
+    from `figures.to_png_data_uri`; ``anchor`` its name in links; ``detail`` more words behind a fold.
     """
 
     title: str
@@ -42,8 +42,8 @@ def render(result: Mapping[str, Any], figures: Sequence[Panel], series: Mapping[
     ----------
     result : result.json of ``fit``, ``refine`` or ``compare``; whatever is missing or null is left out or says why
     figures : pictures in reading order
-    series : ``t``, ``measured``, ``model``, ``residual_over_noise`` (N,) for the zoomable view, and optionally ``window_starts``,
-        ``label`` and ``unit`` (see `series.series_json`); None: no such view
+    series : ``t``, ``measured``, ``model``, ``residual_over_noise`` (N,) for the zoomable view, and optionally
+        ``window_starts``, ``label`` and ``unit`` (see `series.series_json`); None: no such view
 
     Returns
     -------
@@ -90,7 +90,9 @@ def write_report(
     except OSError as error:
         if part is not None:
             part.unlink(missing_ok=True)
-        raise BadInput(f"{target}: the report cannot be written ({error.strerror}), wanted a folder to write into") from None
+        raise BadInput(
+            f"{target}: the report cannot be written ({error.strerror}), wanted a folder to write into"
+        ) from None
     return target
 
 
@@ -117,7 +119,7 @@ def _anchor(wanted: str, taken: set[str]) -> str:
 
 
 def _picture(panel: Panel, anchor: str) -> Markup:
-    """The drawing as it stands in the page: described for those who cannot see it, its ids unlike any other drawing's."""
+    """The drawing as it stands in the page: described in words too, its ids unlike those of any other drawing."""
     words = escape(f"{panel.title}. {panel.sentence}")
     text = panel.figure_svg.strip()
     if text.startswith("data:image/"):

@@ -1,7 +1,7 @@
 """How numbers, units and colours look, in figures and on the page alike.
 
-Colours are the vermillion, blue and green that colour-blind readers tell apart, at a lightness that stands out (contrast of
-3 or more) from white and from near-black; shape always says the same as colour (dots measured, lines model).
+Colours are the vermillion, blue and green that colour-blind readers tell apart, at a lightness that stands out from
+white and from near-black (contrast of 3 or more); shape says the same as colour (dots measured, lines model).
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ def with_unit(label: str, unit: str | None) -> str:
 
 
 def error_decimals(stderr: float) -> int:
-    """Decimals that a standard error deserves (Particle Data Group: two digits up to 35, one up to 95, then rounded up).
+    """Decimals that a standard error deserves; negative when whole tens or hundreds are already uncertain.
 
-    Negative when whole tens or hundreds are already uncertain.
+    The rule is the Particle Data Group's: two digits of the error up to 35, one up to 95, then rounded up.
     """
     power = math.floor(math.log10(stderr))
     leading = round(stderr / 10.0**power * 100.0)  # 100 to 1000
@@ -65,7 +65,7 @@ def _exponent(power: int) -> str:
 
 
 def short(value: Any, digits: int = 3) -> str:
-    """A number without an error, to so many significant digits: ``0.0262``, ``13000``, ``3.1×10⁻⁵``; a dash for none."""
+    """A number without an error, to so many significant digits: ``0.0262``, ``3.1×10⁻⁵``; a dash for none."""
     if not is_number(value):
         return "–"
     value = float(value)
@@ -97,13 +97,14 @@ def _pair(value: float, stderr: float | None) -> str:
 
 
 def format_parts(value: float | None, stderr: float | None, unit: str | None) -> list[tuple[str, str]]:
-    """A value and its error as (number, unit), and once more in degrees if it is an angle; empty when there is no value."""
+    """A value and its error as (number, unit), once more in degrees if it is an angle; empty when there is none."""
     if not is_number(value):
         return []
     assert value is not None
     parts = [(_pair(value, stderr), pretty_unit(unit))]
     if unit == "rad":
-        parts.append((_pair(math.degrees(value), math.degrees(stderr) if is_number(stderr) else None), "deg"))  # type: ignore[arg-type]
+        error = None if stderr is None or not is_number(stderr) else math.degrees(stderr)
+        parts.append((_pair(math.degrees(value), error), "deg"))
     return parts
 
 
@@ -140,10 +141,7 @@ def format_interval(interval: Any, stderr: float | None, unit: str) -> str:
     known = [float(end) for end in interval if is_number(end)]
     if not known:
         return "–"
-    if is_number(stderr) and stderr:
-        spread = float(stderr)
-    else:
-        spread = (known[-1] - known[0]) / 4.0
+    spread = float(stderr) if is_number(stderr) and stderr else (known[-1] - known[0]) / 4.0
     if not spread > 0.0:
         ends = [short(end, 5) if is_number(end) else None for end in interval]
         power = 0

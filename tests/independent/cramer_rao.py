@@ -1,36 +1,39 @@
 r"""How precisely can any unbiased method know the play, the stiffness and the damping? The Cramer-Rao bound.
 
-The model. A link of known inertia J hangs behind a joint with a sharp dead zone,
+The model. A link of inertia J hangs behind a joint with a sharp dead zone, on one continuous trajectory:
 
-    J y'' = -k delta_b(y - x) - c (y' - x')        (base motion)      J y'' = -k delta_b(y) - c y' + F        (force),
+    J y'' = -k delta_b(y - x) - c (y' - x')        driven by its base,
+    J y'' = -k delta_b(y) - c y' + F               driven by a force, the base at rest.
 
-on one continuous trajectory. Base motion: x(t) = sum_j a_j B_j(t) lies in the space of quintic splines with equally
-spaced knots, fine enough to hold the true motion (`Bound.misfit` says how far it is from it). The samples are
-x_i = x(t_i) + sigma_x e_i and z_i = y(t_i) - x(t_i) + sigma_z e'_i with all e, e' independent and standard normal. Unknown are
-theta = (b, k, c), the link's start s_0 = (y, y') and all a_j. Force: F is known exactly, y_i = y(t_i) + sigma e_i.
+Driven by its base: x(t) = sum_j a_j B_j(t) lies in the space of quintic splines with equally spaced knots, fine enough
+to hold the true motion (`Bound.misfit` says how far that is from it). The samples are x_i = x(t_i) + sigma_x e_i and
+z_i = y(t_i) - x(t_i) + sigma_z e'_i, all e and e' independent and standard normal. Unknown are theta = (b, k, c), the
+link's start s_0 = (y, y') and all a_j. Driven by a force: F is known exactly, y_i = y(t_i) + sigma e_i; unknown are
+theta, with or without J, and s_0.
 
-The bound. Stack the noise-weighted samples in m(theta, u), u = (s_0, a). For Gaussian noise of known size the Fisher
-information is J^T J with J = [dm/dtheta, dm/du], and the bound on theta with u unknown is the inverse of the Schur complement
+The bound. Stack the samples, each divided by its noise, in m(theta, u), u = (s_0, a); A = dm/du, E = dm/dtheta. For
+Gaussian noise of known size the Fisher information is [A, E]^T [A, E], and the bound on theta with u unknown is the
+inverse of the Schur complement
 
-    S = E^T E - E^T A (A^T A)^-1 A^T E,      A = dm/du,  E = dm/dtheta:
+    S = E^T E - E^T A (A^T A)^-1 A^T E.
 
-S is the smallest sum of squares |A du + E dtheta|^2 over du, as a quadratic form in dtheta.
+As a quadratic form in dtheta, S is the least that |A du + E dtheta|^2 can be made by choosing du.
 
-The numbers. On a chaotic record dm/ds_0 and dm/dtheta grow like exp(lambda t) and drown in rounding. But S is a minimum,
-and the minimum may be sought over more unknowns if they are tied by exact constraints: let the states s_i at all
-samples be unknowns, du = (ds_0 ... ds_N, da), which the samples see directly (no theta: A du), tied by
+The numbers. On a chaotic record dm/ds_0 and dm/dtheta grow like exp(lambda t) and drown in rounding. But S is a
+minimum, and a minimum may be sought over more unknowns if these are tied by exact constraints: let the states s_i at
+all samples be unknown, du = (ds_0 ... ds_N, da). The samples see them directly and theta not at all, |A du|^2, and they
+are tied by the linearised exact step from sample to sample,
 
-    ds_{i+1} = Phi_i ds_i + G_i da + H_i dtheta,
+    ds_{i+1} = Phi_i ds_i + G_i da + H_i dtheta,         in short  C du = H dtheta.
 
-the linearised exact step from sample to sample. For each unit vector of dtheta the minimum of |A du|^2 / 2 under
-C du = H dtheta solves the sparse system  [A^T A, C^T; C, 0] [du; lambda] = [0; H dtheta], whose entries never grow, and S = (A U)^T (A U)
-with U the solutions side by side.
+For each unit vector dtheta the minimum solves [A^T A, C^T; C, 0] [du; lambda] = [0; H dtheta], a sparse system whose
+entries do not grow; with its solutions U side by side, S = (A U)^T (A U).
 
-The steps. Between switches and knots the motion is linear with constant coefficients in w = (y, y', D, D', ..., D^(5), 1),
-D the driving x or F: w' = M w, and the sensitivity s of (y, y') to a parameter obeys s' = A s + (dM/dtheta w), A being the
-first 2 x 2 of M. One matrix exponential of the joint system takes both over a piece, exactly. At a switch the field is
-continuous (the spring starts from zero force), so a shifted time of switching changes nothing to first order: the jump
-(f_before - f_after) dt of a sensitivity vanishes, and pieces are simply chained.
+The steps. Between switches and knots the motion is linear, its coefficients constant in w = (y, y', D, D', ... D^(5), 1)
+with D the driving x or F: w' = M w. The sensitivity s of (y, y') to a parameter obeys s' = A s + (dM/dtheta) w, A now
+the first 2 x 2 of M, and one matrix exponential of both takes them over a piece exactly. At a switch the field is
+continuous, since the spring starts from zero force, so the jump (f_before - f_after) dt of a sensitivity vanishes:
+pieces are chained.
 
 numpy and scipy only; nothing here shares code with the package.
 """
@@ -39,6 +42,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import BSpline, PPoly, make_lsq_spline
@@ -56,8 +60,11 @@ _Y, _V, _D, _ONE, _SIZE = 0, 1, 2, 8, 9  # places in w
 
 @dataclass(frozen=True)
 class Bound:
-    """Cramer-Rao bound. names: the parameters; covariance (q, q) in their SI units; misfit: root mean square distance of
-    the true driving motion from its spline, in its unit."""
+    """A Cramer-Rao bound.
+
+    names: the parameters; covariance (q, q) in their SI units; misfit: root mean square distance of the true driving
+    motion or force from the spline that stands for it, in its unit.
+    """
 
     names: tuple[str, ...]
     covariance: np.ndarray
@@ -72,7 +79,7 @@ class Bound:
 def base_motion_bound(rig: Rig, t, y, v, x: Callable, *, sigma_x: float, sigma_z: float, spacing: float) -> Bound:
     """The bound on (b, k, c) from a base-motion record.
 
-    Args: t (n,) sample times from 0 [s]; y, v (n,) the true motion of the link [rad, rad/s]; x(t) the true base motion [rad];
+    Args: t (n,) sample times from 0 [s]; y, v (n,) the link's true motion [rad, rad/s]; x(t) the base's [rad];
     sigma_x, sigma_z [rad], sigma_x = 0: x known exactly; spacing: between the knots of the space that x lies in [s].
     """
     steps = _Steps(rig, t, y, v, _Space(t[-1], spacing, x), JOINT, forced=False)
@@ -82,7 +89,7 @@ def base_motion_bound(rig: Rig, t, y, v, x: Callable, *, sigma_x: float, sigma_z
 def force_bound(
     rig: Rig, t, y, v, force: Callable, *, sigma_y: float, spacing: float = 5e-3, inertia: bool = False
 ) -> Bound:
-    """The bound on (b, k, c), or (J, b, k, c) if the inertia is unknown too, from a record driven by a known force(t) [N m].
+    """The bound on (b, k, c), or (J, b, k, c) if `inertia` is unknown too, from a record driven by force(t) [N m].
 
     Args: t, y, v as above; sigma_y [rad]; spacing: between the knots of the spline that stands for the force [s].
     """
@@ -102,20 +109,19 @@ class _Space:
         self.coefficients = make_lsq_spline(times, motion(times), self.knots, _ORDER - 1).c
         gap = BSpline(self.knots, self.coefficients, _ORDER - 1)(times) - motion(times)
         self.misfit = float(np.sqrt(np.mean(gap**2)))
-        # The six pieces of the basis function on unit knots, powers rising; scipy pads its knots on both sides.
+        # The six pieces of the basis function on unit knots, powers rising (scipy pads its knots on both sides).
+        # The last piece belongs to an interval's first coefficient. _table: (6 orders, 6 coefficients, 6 powers).
         padded = PPoly.from_spline(BSpline.basis_element(np.arange(_ORDER + 1.0)))
-        self._pieces = padded.c[::-1, np.searchsorted(padded.x, 0.0) :][:, :_ORDER].T
+        powers = padded.c[::-1, np.searchsorted(padded.x, 0.0) :][:, :_ORDER].T[::-1]
+        self._table = np.zeros((_ORDER, _ORDER, _ORDER))
+        for order in range(_ORDER):
+            self._table[order, :, : _ORDER - order] = np.polynomial.polynomial.polyder(powers, order, axis=1)
+            self._table[order] /= spacing**order
 
     def rows(self, t: float) -> tuple[int, np.ndarray]:
         """The first of six coefficients that matter just after t, and (6, 6): derivatives 0 to 5 from them."""
         first = min(int(t / self.spacing + 1e-9), self.intervals - 1)
-        u = t / self.spacing - first
-        rows = np.empty((_ORDER, _ORDER))
-        for column, powers in enumerate(self._pieces[::-1]):
-            for order in range(_ORDER):
-                rows[order, column] = np.polynomial.polynomial.polyval(u, powers) / self.spacing**order
-                powers = np.polynomial.polynomial.polyder(powers)
-        return first, rows
+        return first, self._table @ (t / self.spacing - first) ** np.arange(_ORDER)
 
 
 class _Steps:
@@ -190,7 +196,7 @@ class _Steps:
         q = len(self.names)
         phi, h, gain = np.eye(2), np.zeros((2, q)), np.zeros((2, _ORDER + inside.size))
         side = None
-        for begin, end in zip(edges[:-1], edges[1:]):
+        for begin, end in pairwise(edges):
             t = begin
             while end - t > 1e-13:
                 lead, rows = self.space.rows(t)

@@ -1,0 +1,94 @@
+"""What was measured and how the answer was checked, in words: facts of the record and the cross-check's table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from .style import format_parts, is_number, pretty_unit, short
+
+BASE = ("backlash", "stiffness", "damping")
+LABELS = {"backlash": "total play b", "stiffness": "contact stiffness k", "damping": "viscous damping c"}
+UNKNOWN = "–"
+
+Entry = Mapping[str, Any]
+
+
+def facts(result: Entry, record: Entry, path: str, stages: Sequence[Entry]) -> Iterator[tuple[str, str]]:
+    """Pairs of a label and a text about the record and the run; whatever result.json lacks is left out."""
+    yield "file", path
+    if is_number(record.get("samples")):
+        rate = f" at {short(record['rate_hz'], 5)} Hz" if is_number(record.get("rate_hz")) else ""
+        length = record.get("duration_s")
+        if not is_number(length) and rate and record["rate_hz"]:
+            length = record["samples"] / record["rate_hz"]
+        yield "samples", f"{record['samples']}{rate}" + (f", {short(length, 4)} s" if is_number(length) else "")
+    if record.get("channels"):
+        yield "channels", ", ".join(map(str, record["channels"]))
+    if record.get("kind"):
+        yield "kind of record", str(record["kind"])
+    play = next((s["backlash"].get("unit") for s in map(parameters_of, stages) if "backlash" in s), None)
+    inertia = result.get("inertia")
+    for channel, value in (result.get("noise") or {}).items():
+        unit = (record.get("units") or {}).get(channel) or (play if channel in ("x", "y", "z") else "")
+        yield f"noise of {channel}", f"{short(value)} {pretty_unit(unit)} (standard deviation, from the data)"
+    if isinstance(inertia, Mapping) and is_number(inertia.get("value")) and not result.get("per_inertia"):
+        how = "given" if inertia.get("given") else "fitted"
+        yield "inertia", f"{short(inertia['value'], 5)} {pretty_unit(str(inertia.get('unit') or ''))}, {how}"
+    if result.get("model"):
+        effects = ", ".join(map(str, result.get("effects") or [])) or "none"
+        yield "model", f"{result['model']}; effects beyond it: {effects}"
+    starts = result.get("starts")
+    if isinstance(starts, Mapping) and is_number(starts.get("tried")):
+        yield "starting points", f"{starts.get('agreeing')} of {starts['tried']} reached this minimum"
+    for other in (result.get("records") or [])[1:]:
+        yield "also fitted", f"{other.get('path')}: {short(other.get('rms_over_noise'))} times its noise"
+
+
+def cross_check_table(check: Any, last: Entry) -> dict[str, Any] | None:
+    """The fit beside other methods on the same samples: a column per method, a row per parameter."""
+    if not isinstance(check, Mapping):
+        return None
+    methods = [str(key) for key, value in check.items() if isinstance(value, Mapping)]
+    fitted = parameters_of(last)
+    names = [name for name in BASE if any(name in check[method] for method in methods)]
+    rows = []
+    for name in names:
+        unit = str(fitted.get(name, {}).get("unit") or "")
+        cells = [_any_value(fitted.get(name), unit), *(_any_value(check[method].get(name), unit) for method in methods)]
+        rows.append({"label": LABELS[name], "cells": cells})
+    agrees = check.get("agrees")
+    words = "No second method could judge this fit."
+    if agrees is not None:
+        words = "The methods agree." if agrees else "The methods do not agree."
+    within = f" Tolerance: {check['tolerance']}." if check.get("tolerance") and agrees is not None else ""
+    why = f" {_sentence(check['why'])}" if check.get("why") else ""
+    return {"methods": [m.replace("_", " ") for m in methods], "rows": rows, "sentence": f"{words}{within}{why}"}
+
+
+def parameters_of(stage: Entry) -> dict[str, Entry]:
+    return {name: entry for name, entry in (stage.get("parameters") or {}).items() if isinstance(entry, Mapping)}
+
+
+def parts(entry: Entry) -> list[tuple[str, str]]:
+    return format_parts(entry.get("value"), entry.get("stderr"), str(entry.get("unit") or ""))
+
+
+def brief(entry: Entry | None, *, unit: bool = True) -> str:
+    shown = [] if entry is None else parts(entry)
+    if not shown:
+        return UNKNOWN
+    return " ".join(shown[0]).rstrip() if unit else shown[0][0]
+
+
+def _any_value(entry: Any, unit: str) -> str:
+    if isinstance(entry, Mapping):
+        if not is_number(entry.get("value")):
+            return f"none: {entry['why']}" if entry.get("why") else UNKNOWN
+        return brief({"unit": unit, **entry})
+    return brief({"value": entry, "unit": unit}) if is_number(entry) else UNKNOWN
+
+
+def _sentence(text: Any) -> str:
+    text = str(text).strip()
+    return text[:1].upper() + text[1:] + ("" if text.endswith((".", "!", "?")) else ".")

@@ -1,0 +1,148 @@
+"""The page of a fit or a comparison: which pictures, in which order, with which sentence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+
+from ..fitting import Comparison, Fit, Score
+from ..mechanics import Drive
+from ..parameters import unit_text
+from ..records import Record
+from ..signals import choose_intervals, fit_spline
+from ..system import System
+from .figures import error_by_stage, measured_against_model, phase_plane, residual_in_time, restoring_force, to_svg
+from .html import Panel, write_report
+
+
+def fit_report(fit: Fit, result: dict[str, Any], path: Path) -> None:
+    """Write the page of a fit."""
+    panels = [
+        *pictures(fit.system, fit.records[0], fit.score, fit.noise[0], fit.translational, fit.per_inertia),
+    ]
+    if len(result["stages"]) > 1 or fit.heldout is not None:
+        held = "" if fit.heldout is None else ", on this record and on the held-out one"
+        sentence = f"1 means that noise alone is left{held}."
+        panels.append(Panel("Prediction error", sentence, to_svg(error_by_stage(result["stages"])), "error"))
+    write_report(path, result, panels, series(fit.records[0], fit.score, fit.translational))
+
+
+def compare_report(found: Comparison, result: dict[str, Any], path: Path) -> None:
+    """Write the page of a comparison."""
+    panels = pictures(found.system, found.record, found.score, found.noise, found.translational, False)
+    write_report(path, result, panels, series(found.record, found.score, found.translational))
+
+
+def series(record: Record, score: Score, translational: bool) -> dict[str, Any]:
+    """What the zoomable view shows."""
+    return {
+        "t": score.t,
+        "measured": score.measured,
+        "model": score.predicted,
+        "residual_over_noise": score.residual,
+        "window_starts": score.window_times,
+        "label": record.observed_name,
+        "unit": _length(translational),
+    }
+
+
+def pictures(
+    system: System, record: Record, score: Score, noise: float, translational: bool, per_inertia: bool
+) -> list[Panel]:
+    """The four pictures of a model beside a record."""
+    name, unit = record.observed_name, _length(translational)
+    worst = score.window_times[int(np.nanargmax(score.window_rms))]
+    panels = [
+        Panel(
+            "Measured against model",
+            f"Each window is predicted from its own start; the model is off by {score.rms:.3g} times the noise over all windows, "
+            f"by {score.median:.3g} times in the median one.",
+            to_svg(
+                measured_against_model(
+                    score.t, score.measured, score.predicted, window_starts=score.window_times, label=name, unit=unit, noise=noise
+                )
+            ),
+            "model",
+        ),
+        Panel(
+            "What the model leaves",
+            f"Where noise alone is left the residual stays within two noises; the worst window begins at {worst:.2f} s.",
+            to_svg(
+                residual_in_time(
+                    score.t, score.residual, window_edges=score.window_times, window_rms=score.window_rms
+                )
+            ),
+            "residual",
+        ),
+    ]
+    if name == "T":
+        return panels
+    motion = Motion(record, name)
+    edges = tuple(float(e) for e in system.edges(0.0)) if system.has_play else None
+    where = "The play lies between the two lines: no contact there. " if edges else ""
+    panels.append(
+        Panel(
+            "Phase plane",
+            f"{where}Relative position against relative speed, measured.",
+            to_svg(phase_plane(motion.z, motion.dz, edges=edges, unit=unit)),
+            "phase",
+        )
+    )
+    if system.contact is not None:
+        torque_unit = unit_text("N m", translational=translational, per_inertia=per_inertia)
+        at = np.linspace(motion.z.min(), motion.z.max(), 801)
+        panels.append(
+            Panel(
+                "Restoring force",
+                "What the joint returns when inertia, damping and loads are taken off the measured motion, beside the model's law.",
+                to_svg(
+                    restoring_force(
+                        motion.z, motion.restoring_torque(system), model_z=at, model_torque=_law(system, at), edges=edges,
+                        unit=torque_unit, length_unit=unit,
+                    )
+                ),
+                "force",
+            )
+        )  # fmt: skip
+    return panels
+
+
+class Motion:
+    """A record's motion with speeds and acceleration from smoothing splines; ``z``, ``dz``, ... have shape (N,)."""
+
+    def __init__(self, record: Record, observed: str) -> None:
+        t, window = record.t, 0.1
+        zero = np.zeros(record.samples)
+        measured = record.channels[observed]
+        self.x, self.dx = zero, zero
+        if "x" in record.channels:
+            spline = fit_spline(t, record.channels["x"], t[0], window / choose_intervals(t, record.channels["x"], window))
+            self.x, self.dx = spline(t), spline(t, 1)
+        y = measured + self.x if observed == "z" else measured
+        link = fit_spline(t, y, t[0], window / choose_intervals(t, y, window))
+        self.t, self.force = t, record.channels.get("F", zero)
+        self.y, self.dy, self.ddy = link(t), link(t, 1), link(t, 2)
+        self.z = measured if observed == "z" else measured - self.x
+        self.dz = self.dy - self.dx
+
+    def restoring_torque(self, system: System) -> np.ndarray:
+        """Torque that brings the link back to the play's middle, -joint torque at rest [N m], shape (N,)."""
+        hidden = tuple(jnp.zeros_like(self.y) for _ in system.state_names[2:])
+        state = (jnp.asarray(self.y), jnp.asarray(self.dy), *hidden)
+        now = system.instant(jnp.asarray(self.t), state, Drive(jnp.asarray(self.x), jnp.asarray(self.dx), self.force))
+        total, joint = system.torques(now, state)
+        ground = np.asarray(total - joint)
+        return ground + self.force - float(system.inertia) * self.ddy - float(system.damper.damping) * self.dz
+
+
+def _law(system: System, z: np.ndarray) -> np.ndarray:
+    zero = jnp.zeros_like(jnp.asarray(z))
+    state = (jnp.asarray(z), zero, *(zero for _ in system.state_names[2:]))
+    return np.asarray(system.transmitted(zero, state, Drive(zero, zero, zero)))
+
+
+def _length(translational: bool) -> str:
+    return "m" if translational else "rad"
