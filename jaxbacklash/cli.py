@@ -27,9 +27,8 @@ app = typer.Typer(
 Columns = Annotated[list[str] | None, typer.Option("--columns", help="Other column names: t=time_s,x=enc1,z=enc2")]
 Unit = Annotated[list[str] | None, typer.Option("--unit", help="Convert a channel to SI: x=deg or x=deg,t=ms")]
 Scale = Annotated[list[str] | None, typer.Option("--scale", help="Multiply a channel: F=35.15")]
-Resample = Annotated[
-    float | None, typer.Option("--resample", help="Bring uneven times to this rate [Hz]; 0: the record's own median rate")
-]
+Resample = Annotated[bool, typer.Option("--resample", help="Bring uneven times to an even grid, at the record's own rate")]
+ResampleRate = Annotated[float | None, typer.Option("--resample-rate", help="The same at this rate [Hz]")]
 Inertia = Annotated[
     float | None,
     typer.Option("--inertia", help="Inertia of the link about its joint [kg m^2; kg]; without it values are per unit inertia"),
@@ -56,7 +55,8 @@ def fit(
     columns: Columns = None,
     unit: Unit = None,
     scale: Scale = None,
-    resample: Resample = None,
+    resample: Resample = False,
+    resample_rate: ResampleRate = None,
     window: Window = 0.2,
     starts: Annotated[int, typer.Option("--starts", help="How many starting points are tried")] = 4,
     profile: Annotated[bool, typer.Option("--profile", help="Intervals from the profile likelihood (slower)")] = False,
@@ -68,7 +68,7 @@ def fit(
 
     command.run(
         records, inertia=inertia, model=model, effects=effects, heldout=heldout, out=out, as_json=json, columns=columns,
-        unit=unit, scale=scale, resample=resample, window=window, starts=starts, profile=profile,
+        unit=unit, scale=scale, resample=resample_rate or resample, window=window, starts=starts, profile=profile,
         translational=translation, seed=seed,
     )  # fmt: skip
 
@@ -82,7 +82,8 @@ def compare(
     columns: Columns = None,
     unit: Unit = None,
     scale: Scale = None,
-    resample: Resample = None,
+    resample: Resample = False,
+    resample_rate: ResampleRate = None,
     window: Window = 0.2,
     translation: Translation = False,
     seed: Seed = 0,
@@ -91,7 +92,7 @@ def compare(
     from .commands import compare as command
 
     command.run(
-        model, record, out=out, as_json=json, columns=columns, unit=unit, scale=scale, resample=resample, window=window,
+        model, record, out=out, as_json=json, columns=columns, unit=unit, scale=scale, resample=resample_rate or resample, window=window,
         translational=translation,
     )  # fmt: skip
 

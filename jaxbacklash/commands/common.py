@@ -15,15 +15,15 @@ from ..records import Record, parse_columns, parse_scales, parse_units, read_rec
 
 
 def read(
-    path: Path, columns: list[str] | None, unit: list[str] | None, scale: list[str] | None, resample: float | None
+    path: Path, columns: list[str] | None, unit: list[str] | None, scale: list[str] | None, resample: float | bool
 ) -> Record:
-    """Read a record with the command line's mappings; ``resample`` 0 means at its own median rate."""
+    """Read a record with the command line's mappings; ``resample`` True means at its own median rate."""
     return read_record(
         path,
         columns=parse_columns(columns) if columns else None,
         units=parse_units(unit) if unit else None,
         scales=parse_scales(scale) if scale else None,
-        resample=None if resample is None else (resample or True),
+        resample=resample or None,
     )
 
 

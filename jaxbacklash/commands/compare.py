@@ -24,7 +24,7 @@ def run(
     columns: list[str] | None,
     unit: list[str] | None,
     scale: list[str] | None,
-    resample: float | None,
+    resample: float | bool,
     window: float,
     translational: bool,
 ) -> None:

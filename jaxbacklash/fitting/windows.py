@@ -102,7 +102,7 @@ def cut(records: Sequence[Record], window: float, *, longest_panel: float = LONG
         if abs(other.dt - lead.dt) > 1e-6 * lead.dt:
             raise BadInput(
                 f"{other.path}: sampled at {other.rate_hz:g} Hz, {lead.path} at {lead.rate_hz:g} Hz; "
-                f"give --resample {lead.rate_hz:g} to bring them to one rate"
+                f"give --resample-rate {lead.rate_hz:g} to bring them to one rate"
             )
     dt = lead.dt
     length = max(8, round(window / dt))

@@ -18,23 +18,22 @@ def facts(result: Entry, record: Entry, path: str, stages: Sequence[Entry]) -> I
     """Pairs of a label and a text about the record and the run; whatever result.json lacks is left out."""
     yield "file", path
     if is_number(record.get("samples")):
-        rate = f" at {short(record['rate_hz'], 5)} Hz" if is_number(record.get("rate_hz")) else ""
-        length = record.get("duration_s")
-        if not is_number(length) and rate and record["rate_hz"]:
-            length = record["samples"] / record["rate_hz"]
-        yield "samples", f"{record['samples']}{rate}" + (f", {short(length, 4)} s" if is_number(length) else "")
+        rate = f" at {record['rate_hz']:.6g} Hz" if is_number(record.get("rate_hz")) else ""
+        seconds = record.get("duration_s")
+        if not is_number(seconds) and rate and record["rate_hz"]:
+            seconds = record["samples"] / record["rate_hz"]
+        yield "samples", f"{record['samples']}{rate}" + (f", {seconds:.6g} s" if is_number(seconds) else "")
     if record.get("channels"):
         yield "channels", ", ".join(map(str, record["channels"]))
     if record.get("kind"):
         yield "kind of record", str(record["kind"])
-    play = next((s["backlash"].get("unit") for s in map(parameters_of, stages) if "backlash" in s), None)
-    inertia = result.get("inertia")
+    length, inertia = length_unit(stages), result.get("inertia")
     for channel, value in (result.get("noise") or {}).items():
-        unit = (record.get("units") or {}).get(channel) or (play if channel in ("x", "y", "z") else "")
+        unit = (record.get("units") or {}).get(channel) or (length if channel in ("x", "y", "z") else "")
         yield f"noise of {channel}", f"{short(value)} {pretty_unit(unit)} (standard deviation, from the data)"
     if isinstance(inertia, Mapping) and is_number(inertia.get("value")) and not result.get("per_inertia"):
         how = "given" if inertia.get("given") else "fitted"
-        yield "inertia", f"{short(inertia['value'], 5)} {pretty_unit(str(inertia.get('unit') or ''))}, {how}"
+        yield "inertia", f"{inertia['value']:.6g} {pretty_unit(str(inertia.get('unit') or ''))}, {how}"
     if result.get("model"):
         effects = ", ".join(map(str, result.get("effects") or [])) or "none"
         yield "model", f"{result['model']}; effects beyond it: {effects}"
@@ -66,15 +65,26 @@ def cross_check_table(check: Any, last: Entry) -> dict[str, Any] | None:
     return {"methods": [m.replace("_", " ") for m in methods], "rows": rows, "sentence": f"{words}{within}{why}"}
 
 
+def length_unit(stages: Sequence[Entry]) -> str:
+    """``rad`` or ``m``: what the joint moves in, by the units of its parameters; empty when they do not tell."""
+    units = [str(entry.get("unit") or "") for stage in stages for entry in parameters_of(stage).values()]
+    if any("rad" in unit for unit in units):
+        return "rad"
+    return "m" if any(unit == "m" or unit.endswith("/m") for unit in units) else ""
+
+
 def parameters_of(stage: Entry) -> dict[str, Entry]:
+    """The parameters of a stage that are written as result.json says."""
     return {name: entry for name, entry in (stage.get("parameters") or {}).items() if isinstance(entry, Mapping)}
 
 
 def parts(entry: Entry) -> list[tuple[str, str]]:
+    """A parameter as (number, unit) pairs, see `style.format_parts`."""
     return format_parts(entry.get("value"), entry.get("stderr"), str(entry.get("unit") or ""))
 
 
 def brief(entry: Entry | None, *, unit: bool = True) -> str:
+    """A parameter in its own unit alone, or a dash."""
     shown = [] if entry is None else parts(entry)
     if not shown:
         return UNKNOWN

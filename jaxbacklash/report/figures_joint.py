@@ -22,9 +22,7 @@ POINTS = 30_000  # measured points that are drawn one by one
 
 
 @drawn_in_style
-def phase_plane(
-    z: Any, dz: Any, *, edges: Any, model_z: Any = None, model_dz: Any = None, unit: str = "rad"
-) -> Figure:
+def phase_plane(z: Any, dz: Any, *, edges: Any, model_z: Any = None, model_dz: Any = None, unit: str = "rad") -> Figure:
     """How often the joint passes each relative position and speed, with the play between its two edges.
 
     Parameters

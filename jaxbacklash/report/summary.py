@@ -12,6 +12,7 @@ from .style import format_evidence, format_interval, is_number, short, with_unit
 
 MARKS = {"found": "✓", "one-sided": "◐", "given": "·"}  # a sign beside each word, for those who see no colour
 
+
 def summarise(result: Entry) -> dict[str, Any]:
     """Everything the page says in words, from result.json of ``fit``, ``refine`` or ``compare``."""
     stages = [stage for stage in result.get("stages") or [] if isinstance(stage, Mapping)]

@@ -29,11 +29,11 @@ are tied by the linearised exact step from sample to sample,
 For each unit vector dtheta the minimum solves [A^T A, C^T; C, 0] [du; lambda] = [0; H dtheta], a sparse system whose
 entries do not grow; with its solutions U side by side, S = (A U)^T (A U).
 
-The steps. Between switches and knots the motion is linear, its coefficients constant in w = (y, y', D, D', ... D^(5), 1)
-with D the driving x or F: w' = M w. The sensitivity s of (y, y') to a parameter obeys s' = A s + (dM/dtheta) w, A now
-the first 2 x 2 of M, and one matrix exponential of both takes them over a piece exactly. At a switch the field is
-continuous, since the spring starts from zero force, so the jump (f_before - f_after) dt of a sensitivity vanishes:
-pieces are chained.
+The steps. Between switches and knots the motion is linear, with constant coefficients in the joint state
+w = (y, y', D, D', ... D^(5), 1), D the driving x or F: w' = M w. The sensitivity s of (y, y') to a parameter obeys
+s' = A s + (dM/dtheta) w, A now the first 2 x 2 of M, and one matrix exponential takes both over a piece exactly.
+At a switch the field is continuous, since the spring starts from zero force, so the jump (f_before - f_after) dt of a
+sensitivity vanishes: pieces are chained.
 
 numpy and scipy only; nothing here shares code with the package.
 """
