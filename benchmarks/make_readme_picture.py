@@ -10,10 +10,8 @@ from __future__ import annotations
 
 import argparse
 import io
-import json
 import re
 import tempfile
-from importlib.resources import as_file, files
 from pathlib import Path
 from typing import Any
 
@@ -23,10 +21,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import jaxbacklash as jb
+from jaxbacklash.commands.demo import shipped
 from jaxbacklash.report.drawing import SETTINGS
+from jaxbacklash.report.fit_report import Motion
 from jaxbacklash.report.style import GAP, INK, MEASURED, MODEL
 from jaxbacklash.report.thinning import envelope
-from jaxbacklash.signals import choose_intervals, fit_spline
 
 ROOT = Path(__file__).resolve().parents[1]
 STRETCH = (1.2, 2.6)  # s, drawn in full
@@ -37,22 +36,8 @@ CARD, DARK_CARD, DARK_INK = "#ffffff", "#161b22", "#e6edf3"
 
 def fits() -> tuple[jb.Fit, jb.Fit]:
     """The demo's record fitted by the base model, and with gravity."""
-    data = files("jaxbacklash") / "data"
-    inertia = json.loads((data / "demo.json").read_text())["told"]["inertia"]
-    with as_file(data / "demo_train.csv") as path:
-        record = jb.read_record(path)
+    record, _, inertia = shipped()
     return jb.fit(record, inertia=inertia, starts=1), jb.fit(record, inertia=inertia, effects=["gravity"], starts=1)
-
-
-def joint_torque(fit: jb.Fit) -> tuple[np.ndarray, np.ndarray]:
-    """Relative motion [rad] and the contact torque that the smoothed motion calls for [N m], (N,) each."""
-    t, x, z = fit.records[0].t, fit.records[0].channels["x"], fit.records[0].channels["z"]
-    spline = fit_spline(t, x + z, t[0], 0.1 / choose_intervals(t, x + z, 0.1))
-    base = fit_spline(t, x, t[0], 0.1 / choose_intervals(t, x, 0.1))
-    y, rate, acceleration = (spline(t, order) for order in range(3))
-    known = {name: found.value for name, found in fit.parameters.items()}
-    torque = float(fit.system.inertia) * acceleration - known["gravity.G"] * np.sin(y)
-    return y - base(t), torque + known["damping"] * (rate - base(t, 1))
 
 
 def draw_motion(ax: Axes, fit: jb.Fit) -> None:
@@ -72,12 +57,13 @@ def draw_motion(ax: Axes, fit: jb.Fit) -> None:
 
 def draw_law(ax: Axes, fit: jb.Fit) -> None:
     """Torque against relative motion: points from the smoothed record, the fitted play and stiffness as a line."""
-    z, torque = joint_torque(fit)
-    near = (np.abs(z) < NEAR) & (np.arange(z.size) % 5 == 0)
-    z, torque = z[near], torque[near]
+    motion = Motion(fit.records[0], "z")
+    near = (np.abs(motion.z) < NEAR) & (np.arange(motion.z.size) % 5 == 0)
+    near[:50] = near[-50:] = False  # where a record begins and ends its acceleration is not known
+    z, torque = motion.z[near], motion.restoring_torque(fit.system)[near]
     low, high = (float(edge) for edge in fit.system.edges(0.0))
     line = np.array([z.min(), low, high, z.max()])
-    law = -float(fit.system.contact.stiffness) * (np.clip(line - high, 0.0, None) + np.clip(line - low, None, 0.0))
+    law = fit.parameters["stiffness"].value * (line - np.clip(line, low, high))
     ax.axvspan(np.degrees(low), np.degrees(high), color=GAP, alpha=0.18, lw=0)
     ax.plot(np.degrees(line), law, color=MODEL, lw=1.6, zorder=3)
     ax.plot(np.degrees(z), torque, "o", color=MEASURED, ms=2.2, mew=0, alpha=0.6)
@@ -85,7 +71,7 @@ def draw_law(ax: Axes, fit: jb.Fit) -> None:
     text = f"play {np.degrees(play.value):.4f}°\n± {np.degrees(play.stderr):.4f}°"
     ax.annotate(text, (0.0, 0.04), xycoords=("data", "axes fraction"), ha="center", va="bottom")
     reach = 1.1 * float(np.max(np.abs(law)))
-    ax.set(title="Torque across the joint", xlabel="z [deg]", ylabel="torque [N m]", ylim=(-reach, reach))
+    ax.set(title="Restoring torque", xlabel="z [deg]", ylabel="torque [N m]", ylim=(-reach, reach))
 
 
 def draw_error(ax: Axes, before: jb.Fit, after: jb.Fit) -> None:

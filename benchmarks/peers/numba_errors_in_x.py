@@ -1,18 +1,24 @@
 """The like-for-like peer of our fit: scipy's `least_squares` and numba on the whole errors-in-variables problem.
 
-Unknown are the total play b [rad], k [N m/rad] and c [N m s/rad]; every window's start y [rad], y' [rad/s]; and the
-coefficients of the quintic spline that stands for the base motion x, m to a window. Residuals, all in units of the noise:
-measured z and measured x, and in a second stage the end of each window minus the start of the next (`TIES`). A row of
-weight 1e-3 per coefficient, towards the least-squares spline, holds the few that meet no sample. This is row for row
-the problem that `jaxbacklash.fit` solves; `numba_shooting` solves a smaller one, with x taken as exact and no ties.
+Unknown are the total play b [rad], k [N m/rad], c [N m s/rad]; every window's start y [rad], y' [rad/s]; and the coefficients
+of the quintic spline that stands for the base motion x, m to a window. Residuals, all in units of the noise: measured z
+and measured x, and in a second stage the end of each window minus the start of the next (`TIES`). A row of weight 1e-3
+a coefficient, towards the least-squares spline, holds the few coefficients that meet no sample. Row for row this is the
+problem that `jaxbacklash.fit` solves; `numba_shooting` solves a smaller one, with x taken as exact and no ties.
 
-As there, v = y' + (c/J)(y - x) needs x alone:  y' = v - (c/J) (y - x),  v' = -(k/J) delta(y - x). Windows are the
-innermost loop, so that the compiler makes vector instructions of them; RK4 steps of at most `longest` seconds.
+RK4 in steps of at most 1 ms does not do: its error where the link meets an edge of the play is up to 0.7 of the noise and
+25 of the ties. So each panel of at most 1 ms is two RK4 steps that meet where the link does. Windows are the innermost
+loop, so that the compiler makes vector instructions of them. One core, no fastmath.
 
-`fit(..., jacobian="explicit")` hands scipy a sparse Jacobian filled by numba from forward differences, perturbing all
-windows at once; `jacobian="grouped"` leaves the differences to scipy and its `jac_sparsity`. LSMR does the linear algebra
-(a dense factorisation is out of the question at this size). It converges only if the unknowns are scaled: each
-window's unknowns are first transformed by the Cholesky factor of their own block of the normal equations.
+`fit(..., jacobian=...)`, in the order of what is left to scipy; the linear algebra is LSMR's in all three, since a dense
+factorisation is out of the question at this size:
+
+* "grouped": scipy's own grouped differences, by `jac_sparsity`;
+* "explicit": a sparse matrix, filled by numba from forward differences that perturb all windows at once;
+* "operator": the same matrix behind a `LinearOperator` that whitens the unknowns by the arrow-shaped Cholesky factor of
+  the normal equations at the start of each stage, so that LSMR needs ten steps instead of hundreds.
+
+The first two are whitened window by window; left as they are, LSMR needs ten times as many steps still.
 """
 
 from __future__ import annotations
@@ -21,59 +27,299 @@ import time
 
 import numpy as np
 from numba import njit
-from scipy.interpolate import BSpline, make_lsq_spline
+from scipy.interpolate import BSpline
+from scipy.linalg import block_diag, cho_factor, cholesky, cholesky_banded, solve_triangular
+from scipy.linalg.lapack import dtbtrs
 from scipy.optimize import least_squares
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, diags
+from scipy.sparse.linalg import LinearOperator, spsolve
 
 NAMES = ("backlash", "stiffness", "damping")
-DEGREE = 5
-TIES = 50.0 * np.array([1.0, 0.02])  # how many times sharper than one sample's noise a tie is: y [1], y' [s]
+TIES = 50.0 * np.array([1.0, 0.02])  # a tie against one sample's noise: for y [1], for y' [s]
 WHISPER = 1e-3
+FAR = 1e4  # the unit of a whitened unknown, in standard errors: scipy steps 1.5e-8 of it in its differences
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def spline(weights, local, first, out):
+def crossing(gap, speed, bend, h):
+    """First time in (0, h) at which gap + speed t + bend t^2 / 2 is zero, or h."""
+    square = speed * speed - 2 * bend * gap
+    root = np.sqrt(max(square, 0.0))
+    one, two = 2 * gap / (root - speed), -2 * gap / (root + speed)
+    one = one if (square > 0.0) & (one > 0.0) & (one < h) else h
+    two = two if (square > 0.0) & (two > 0.0) & (two < h) else h
+    return min(one, two)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def rk4(y, v, half, k, c, z, x0, x1, x2, x3, s, h):
+    """One step from time s of a panel with x = x0 + x1 s + ..., in the region that z lies in."""
+    side = 1.0 if z > half else (-1.0 if z < -half else 0.0)
+    k = k if side != 0.0 else 0.0
+    push, m, e = k * side * half, s + h / 2, s + h
+    xa, da = x0 + s * (x1 + s * (x2 + s * x3)), x1 + s * (2 * x2 + 3 * s * x3)
+    xm, dm = x0 + m * (x1 + m * (x2 + m * x3)), x1 + m * (2 * x2 + 3 * m * x3)
+    xe, de = x0 + e * (x1 + e * (x2 + e * x3)), x1 + e * (2 * x2 + 3 * e * x3)
+    a1 = push - k * (y - xa) - c * (v - da)
+    v2 = v + h / 2 * a1
+    a2 = push - k * (y + h / 2 * v - xm) - c * (v2 - dm)
+    v3 = v + h / 2 * a2
+    a3 = push - k * (y + h / 2 * v2 - xm) - c * (v3 - dm)
+    v4 = v + h * a3
+    a4 = push - k * (y + h * v3 - xe) - c * (v4 - de)
+    return y + h / 6 * (v + 2 * v2 + 2 * v3 + v4), v + h / 6 * (a1 + 2 * a2 + 2 * a3 + a4)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def spline(basis, local, first, out):
     for w in range(out.size):
         out[w] = (
-            weights[0] * local[first, w] + weights[1] * local[first + 1, w] + weights[2] * local[first + 2, w]
-            + weights[3] * local[first + 3, w] + weights[4] * local[first + 4, w] + weights[5] * local[first + 5, w]
+            basis[0] * local[first, w] + basis[1] * local[first + 1, w] + basis[2] * local[first + 2, w]
+            + basis[3] * local[first + 3, w] + basis[4] * local[first + 4, w] + basis[5] * local[first + 5, w]
         )  # fmt: skip
 
 
 @njit(cache=True, error_model="numpy")
-def simulate(theta, starts, local, basis, first, steps, h, inertia, x0, z, ends):
-    """z (m, w) of all windows, and y, y' at their ends (2, w).
+def simulate(theta, starts, local, basis, first, panels, h, inertia, z, base, ends):
+    """z and x (m, w) of w windows of m samples, and y, y' at their ends (2, w).
 
-    theta (3,); starts (2, w); local (m + 5, w) spline coefficients; basis (2 steps m + 1, 6) with the index `first` of its
-    first coefficient; `steps` of length h a sample; x0 (2, w) is scratch.
+    theta (3,); starts (2, w); local (m + 5, w) spline coefficients; basis (2, edges, 6) values and slopes of those that are
+    not zero at a panel edge, beginning with number first (edges,); `panels` of length h a sample.
     """
     half, k, c = theta[0] / 2, theta[1] / inertia, theta[2] / inertia
     samples, windows = z.shape
-    y, v = starts[0].copy(), np.empty(windows)
-    a, b, d = np.empty(windows), np.empty(windows), np.empty(windows)
-    spline(basis[0], local, first[0], a)
-    for w in range(windows):
-        v[w] = starts[1, w] + c * (y[w] - a[w])
-    row = 0
+    y, v, edge = starts[0].copy(), starts[1].copy(), 0
+    x, dx, x_end, dx_end = np.empty(windows), np.empty(windows), np.empty(windows), np.empty(windows)
+    spline(basis[0, 0], local, first[0], x)
+    spline(basis[1, 0], local, first[0], dx)
     for n in range(samples):
         for w in range(windows):
-            z[n, w] = y[w] - a[w]
-        for _ in range(steps):
-            spline(basis[row + 1], local, first[row + 1], b)
-            spline(basis[row + 2], local, first[row + 2], d)
-            row += 2
+            z[n, w], base[n, w] = y[w] - x[w], x[w]
+        for _ in range(panels):
+            edge += 1
+            spline(basis[0, edge], local, first[edge], x_end)
+            spline(basis[1, edge], local, first[edge], dx_end)
             for w in range(windows):
-                u = y[w] - a[w]
-                dy1, dv1 = v[w] - c * u, -k * (u - min(max(u, -half), half))
-                u = y[w] + h / 2 * dy1 - b[w]
-                dy2, dv2 = v[w] + h / 2 * dv1 - c * u, -k * (u - min(max(u, -half), half))
-                u = y[w] + h / 2 * dy2 - b[w]
-                dy3, dv3 = v[w] + h / 2 * dv2 - c * u, -k * (u - min(max(u, -half), half))
-                u = y[w] + h * dy3 - d[w]
-                dy4, dv4 = v[w] + h * dv3 - c * u, -k * (u - min(max(u, -half), half))
-                y[w] += h / 6 * (dy1 + 2 * dy2 + 2 * dy3 + dy4)
-                v[w] += h / 6 * (dv1 + 2 * dv2 + 2 * dv3 + dv4)
-                a[w] = d[w]
-    for w in range(windows):
-        ends[0, w] = y[w]
-        ends[1, w] = v[w] - c * (y[w] - a[w])
+                x0, x1, mean = x[w], dx[w], (x_end[w] - x[w]) / h
+                x2, x3 = (3 * mean - 2 * x1 - dx_end[w]) / h, (x1 + dx_end[w] - 2 * mean) / (h * h)
+                u, du = y[w] - x0, v[w] - x1
+                ddu = -k * (u - min(max(u, -half), half)) - c * du - 2 * x2
+                split = min(crossing(u + half, du, ddu, h), crossing(u - half, du, ddu, h))
+                split = split if split < h else h / 2
+                p = split / 2
+                y1, v1 = rk4(y[w], v[w], half, k, c, u + p * (du + p / 2 * ddu), x0, x1, x2, x3, 0.0, split)
+                u = y1 - (x0 + split * (x1 + split * (x2 + split * x3)))
+                du = v1 - (x1 + split * (2 * x2 + 3 * split * x3))
+                p = (h - split) / 2
+                y[w], v[w] = rk4(y1, v1, half, k, c, u + p * (du + p / 2 * ddu), x0, x1, x2, x3, split, h - split)
+                x[w], dx[w] = x_end[w], dx_end[w]
+    ends[0], ends[1] = y, v
+
+
+@njit(cache=True, error_model="numpy")
+def differences(theta, starts, local, basis, first, panels, h, inertia, z, base, ends, columns, end_columns):
+    """Forward differences of all windows at once, columns (m, w, q) of z and end_columns (2, w, q) of the ends.
+
+    The q = 3 + 2 + m + 5 columns: parameters (by a relative change), a window's start, its coefficients and the next five.
+    """
+    simulate(theta, starts, local, basis, first, panels, h, inertia, z, base, ends)
+    moved, scratch, moved_ends = np.empty_like(z), np.empty_like(z), np.empty_like(ends)
+    for i in range(columns.shape[2]):
+        t, s, c = theta.copy(), starts.copy(), local.copy()
+        step = 1e-7 if i < 3 else 1e-8
+        if i < 3:
+            t[i] += step * t[i]
+        elif i < 5:
+            s[i - 3] += step
+        else:
+            c[i - 5] += step
+        simulate(t, s, c, basis, first, panels, h, inertia, moved, scratch, moved_ends)
+        for w in range(z.shape[1]):
+            for n in range(z.shape[0]):
+                columns[n, w, i] = (moved[n, w] - z[n, w]) / step
+            end_columns[0, w, i] = (moved_ends[0, w] - ends[0, w]) / step
+            end_columns[1, w, i] = (moved_ends[1, w] - ends[1, w]) / step
+
+
+class Problem:
+    """A record cut into windows, x on a spline.
+
+    The unknowns (3 + w (m + 2) + 5,): parameters over their start; by window m coefficients, y and y'; the last five
+    coefficients. In the Jacobian a parameter's column is that of its logarithm.
+
+    Args: t, x, z (n,) [s, rad, rad]; inertia [kg m^2]; start {name: value}; sigma_z, sigma_x [rad]; intervals, the spline's
+    m a window; window [s]; longest panel [s].
+    """
+
+    def __init__(self, t, x, z, inertia, start, sigma_z, sigma_x, intervals, window=0.1, longest=1e-3):
+        began = time.perf_counter()
+        dt, self.inertia, self.m = (t[-1] - t[0]) / (len(t) - 1), inertia, intervals
+        self.samples = round(window / dt)
+        self.windows = -(-len(t) // self.samples)
+        self.panels, m, w = int(np.ceil(dt / longest - 1e-9)), self.m, self.windows
+        self.h, self.tied = dt / self.panels, False
+        self.scale = np.array([start[name] for name in NAMES], float)
+        self.measured, self.base, held = self._cut(z), self._cut(x), self._cut(np.ones(len(t)))
+        self.weight, self.base_weight = held / sigma_z, held / sigma_x
+        self.sharp, self.whisper = TIES[:, None] / sigma_z, WHISPER / sigma_x
+
+        edges = np.arange(self.samples * self.panels + 1) * (m / (self.samples * self.panels))
+        self.first = np.minimum(edges.astype(int), m - 1)
+        spacing, hump = self.samples * dt / m, BSpline.basis_element(np.arange(7.0))
+        inside = np.clip((edges - self.first)[:, None] + 5.0 - np.arange(6), 0.0, 6.0)
+        self.basis = np.stack([hump(inside), hump(inside, 1) / spacing])
+        knots = t[0] + spacing * (np.arange(w * m + 11) - 5)
+        design = BSpline.design_matrix(t, knots, 5)
+        gram = (design.T @ design + diags(np.full(w * m + 5, 1e-10))).tocsc()
+        self.coefficients = spsolve(gram, design.T @ x)
+        link, at = BSpline(knots, spsolve(gram, design.T @ (x + z)), 5), t[0] + np.arange(w) * self.samples * dt
+
+        # Where each unknown is, and which unknowns the rows of the Jacobian meet.
+        block = 3 + np.arange(w)[:, None] * (m + 2)
+        self.at_starts = (block + m + np.arange(2)).T
+        self.at_local = np.hstack([block + np.arange(m), block + m + 2 + np.arange(5)]).T
+        self.at_coefficients = np.append(self.at_local[:m].T.ravel(), self.at_local[m:, -1])
+        self.first_guess = np.ones(3 + w * (m + 2) + 5)
+        self.first_guess[self.at_starts] = link(at), link(at, 1)
+        self.first_guess[self.at_coefficients] = self.coefficients
+        own = np.vstack([np.tile(np.arange(3)[:, None], w), self.at_starts, self.at_local]).T
+        self.motion_columns = np.broadcast_to(own, (self.samples, *own.shape)).reshape(-1)
+        tie = [np.column_stack([own[:-1], self.at_starts[i, 1:]]) for i in range(2)]
+        self.tie_columns = np.concatenate(tie).ravel()
+        row = self.first[:-1 : self.panels, None] + np.arange(6)
+        self.base_columns = self.at_local[row].transpose(0, 2, 1).ravel()
+        values = self.basis[0, :-1 : self.panels]
+        self.base_data = (values[:, None, :] * self.base_weight[:, :, None]).ravel()
+        self.seconds_spline = time.perf_counter() - began
+
+    def _cut(self, values):
+        padded = np.zeros(self.windows * self.samples)
+        padded[: len(values)] = values
+        return np.ascontiguousarray(padded.reshape(self.windows, -1).T)
+
+    def _arguments(self, p):
+        z, base, ends = np.empty_like(self.weight), np.empty_like(self.weight), np.empty((2, self.windows))
+        starts, local = p[self.at_starts], p[self.at_local]
+        return p[:3] * self.scale, starts, local, self.basis, self.first, self.panels, self.h, self.inertia, z, base, ends
+
+    def residual(self, p):
+        """All residuals in units of the noise, at the unknowns p: motion, ties in the second stage, base motion, whisper."""
+        arguments = self._arguments(p)
+        simulate(*arguments)
+        starts, (z, base, ends) = arguments[1], arguments[-3:]
+        ties = ((ends[:, :-1] - starts[:, 1:]) * self.sharp).ravel() if self.tied else ()
+        whisper = (p[self.at_coefficients] - self.coefficients) * self.whisper
+        motion, base = (z - self.measured) * self.weight, (base - self.base) * self.base_weight
+        return np.concatenate([motion.ravel(), ties, base.ravel(), whisper])
+
+    def jacobian(self, p):
+        """Its sparse Jacobian, by forward differences."""
+        q, w = self.m + 10, self.windows
+        columns, ends = np.empty((*self.weight.shape, q)), np.empty((2, w, q))
+        differences(*self._arguments(p), columns, ends)
+        columns *= self.weight[:, :, None]
+        ties, where, rows = (), (), 0
+        if self.tied:
+            following = np.full((2, w - 1, 1), -1.0)
+            ties = (np.concatenate([ends[:, :-1], following], axis=2) * self.sharp[:, :, None]).ravel()
+            where, rows = self.tie_columns, 2 * (w - 1)
+        held, n = self.at_coefficients, self.weight.size
+        data = np.concatenate([columns.ravel(), ties, self.base_data, np.full(held.size, self.whisper)])
+        indices = np.concatenate([self.motion_columns, where, self.base_columns, held])
+        lengths = np.repeat([q, q + 1, 6, 1], [n, rows, n, held.size])
+        return csr_matrix((data, indices.astype(np.int32), np.append(0, np.cumsum(lengths))), (lengths.size, p.size))
+
+
+class Windowed:
+    """Unknowns whitened window by window: p = matrix u, by the factors of the blocks of J^T J."""
+
+    def __init__(self, problem, normal):
+        m, w, size = problem.m, problem.windows, normal.shape[0]
+        where = 3 + np.arange(w)[:, None] * (m + 2) + np.arange(m + 2)
+        rows, columns = np.broadcast_arrays(where[:, :, None], where[:, None, :])
+        blocks = np.asarray(normal[rows.ravel(), columns.ravel()]).reshape(rows.shape)
+        inverse = np.linalg.inv(np.linalg.cholesky(blocks)).transpose(0, 2, 1)
+        rest = np.r_[0:3, size - 5 : size]
+        upper = np.triu_indices(m + 2)
+        data = np.append(inverse[:, *upper], normal.diagonal()[rest] ** -0.5)
+        where = np.append(rows[:, *upper], rest), np.append(columns[:, *upper], rest)
+        self.matrix = csr_matrix((data, where), normal.shape)
+
+    def apply(self, u):
+        return self.matrix @ u
+
+
+class Arrow:
+    """Unknowns whitened by the whole factor of J^T J: banded for the windows, a border for the parameters."""
+
+    def __init__(self, problem, normal):
+        inner, width = normal[3:, 3:], 2 * problem.m + 4
+        bands = np.zeros((width, inner.shape[0]))
+        for i in range(width):
+            bands[i, : inner.shape[0] - i] = inner.diagonal(-i)
+        self.factor = cholesky_banded(bands, lower=True)
+        self.border = self._solve(normal[3:, :3].toarray())
+        self.corner = np.linalg.inv(np.linalg.cholesky(normal[:3, :3].toarray() - self.border.T @ self.border))
+
+    def _solve(self, right, transposed="N"):
+        return dtbtrs(self.factor, right, uplo="L", trans=transposed)[0]
+
+    def apply(self, u):
+        theta = self.corner.T @ u[:3]
+        return np.append(theta, self._solve(u[3:] - self.border @ theta, "T"))
+
+    def adjoint(self, g):
+        inner = self._solve(g[3:]).ravel()
+        return np.append(self.corner @ (g[:3] - self.border.T @ inner), inner)
+
+
+def fit(t, x, z, inertia, start, *, sigma_z, sigma_x, intervals, jacobian="operator", ftol=1e-7, **options):
+    """Parameters, cost (half the sum of squares), nfev, seconds (without compiling and the spline), seconds_spline.
+
+    Arguments as `Problem`'s; jacobian: "grouped", "explicit" or "operator".
+    """
+    problem = Problem(t, x, z, inertia, start, sigma_z, sigma_x, intervals, **options)
+    problem.residual(problem.first_guess)
+    problem.jacobian(problem.first_guess)  # both compile
+    began, p, evaluations = time.perf_counter(), problem.first_guess, 0
+    for problem.tied in (False, True):
+        matrix = problem.jacobian(p)
+        normal = (matrix.T @ matrix).tocsr()
+        normal = normal + diags(1e-12 * normal.diagonal() + (normal.diagonal() == 0.0)).tocsr()
+        white = (Arrow if jacobian == "operator" else Windowed)(problem, normal)
+        found = _stage(problem, p, white, jacobian, ftol)
+        p, evaluations = found.p, evaluations + found.nfev
+    numbers = dict(zip(NAMES, map(float, p[:3] * problem.scale)))
+    seconds = time.perf_counter() - began
+    return {
+        **numbers, "cost": float(found.cost), "nfev": evaluations, "seconds": seconds,
+        "seconds_spline": problem.seconds_spline,
+    }  # fmt: skip
+
+
+def _stage(problem, p, white, jacobian, ftol):
+    # scipy's first trust region is as large as the first guess: at the origin it would be one standard error.
+    begin = np.full(p.size, 1.0 if jacobian == "grouped" else FAR)
+    unit = FAR if jacobian == "grouped" else 1.0
+
+    def place(u):
+        return p + white.apply(unit * (u - begin))
+
+    def explicit(u):
+        return (problem.jacobian(place(u)) @ white.matrix).tocsr()
+
+    def operator(u):
+        matrix = problem.jacobian(place(u))
+        turned = matrix.T
+        return LinearOperator(
+            matrix.shape, matvec=lambda v: matrix @ white.apply(v), rmatvec=lambda v: white.adjoint(turned @ v), dtype=float
+        )
+
+    settings = {"tr_solver": "lsmr", "tr_options": {"regularize": False}, "ftol": ftol, "xtol": None, "gtol": None}
+    if jacobian == "grouped":
+        settings |= {"jac_sparsity": problem.jacobian(p) @ abs(white.matrix) != 0, "x_scale": "jac"}
+    else:
+        settings |= {"jac": explicit if jacobian == "explicit" else operator}
+    found = least_squares(lambda u: problem.residual(place(u)), begin, **settings)
+    found.p = place(found.x)
+    return found

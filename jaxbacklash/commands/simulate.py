@@ -12,6 +12,7 @@ from ..errors import BadInput, NoAnswer
 from ..excitation import AbstractExcitation, Chirp, Harmonic, Multisine, Rest, SteppedSine
 from ..model_file import load
 from ..records import read_record, write_record
+from ..records.writer import WRITERS
 from ..simulation import as_record, measured_base
 from ..simulation import simulate as run_system
 from .common import json_text
@@ -46,6 +47,8 @@ def run(
             raise BadInput(f"{option} {value:g}: wanted a number above 0 and up to {top:g}")
     if noise < 0.0:
         raise BadInput(f"--noise {noise:g}: wanted a standard deviation, zero or more")
+    if out.suffix.lower() not in WRITERS:
+        raise BadInput(f"--out {out}: found the suffix {out.suffix!r}, wanted one of {', '.join(WRITERS)}")
     system = load(model)
     rng = np.random.default_rng(seed)
     drive, t0, duration = parse_excitation(excitation, as_force, duration, rng)

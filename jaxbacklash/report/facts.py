@@ -54,7 +54,7 @@ def cross_check_table(check: Any, last: Entry) -> dict[str, Any] | None:
     rows = []
     for name in names:
         unit = str(fitted.get(name, {}).get("unit") or "")
-        cells = [_any_value(fitted.get(name), unit), *(_any_value(check[method].get(name), unit) for method in methods)]
+        cells = [brief(fitted.get(name)), *(_any_value(check[method].get(name), unit) for method in methods)]
         rows.append({"label": LABELS[name], "cells": cells})
     agrees = check.get("agrees")
     words = "No second method could judge this fit."

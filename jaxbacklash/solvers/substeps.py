@@ -104,8 +104,9 @@ def run_panels(
     the state after the last panel, and the states before panels 0, every, 2 every, ... stacked on a leading axis
     """
 
-    def panel(state: Any, k: int, at: Any, t: Any) -> Any:
-        a, b = (jax.tree.map(lambda u: u[i], at) for i in (k, k + 1))
+    def panel(carry: Any, at: Any) -> Any:
+        t, state = carry
+        a, b = at
         base = Cubic.hermite(a.x, a.dx, b.x, b.dx, h)
         force = Cubic.between(a.force, a.dforce, b.force, b.dforce, h)
 
@@ -113,24 +114,18 @@ def run_panels(
             return type(edges)(base.at(tau), base.slope(tau), force.at(tau))
 
         if located:
-            return advance(system, t, state, drive_at, base, h)
-        return advance_smooth(system, t, state, drive_at, h)
+            return (t + h, advance(system, t, state, drive_at, base, h)), None
+        return (t + h, advance_smooth(system, t, state, drive_at, h)), None
 
     def sample(carry: Any, at: Any) -> Any:
-        t, before = carry
-        state = before
-        for k in range(every):
-            state = panel(state, k, at, t + k * h)
-        return (t + every * h, state), before
+        if every == 1:
+            after, _ = panel(carry, jax.tree.map(lambda u: u[0], at))
+        else:  # a loop, not a copy of the panel's code: compiling is what costs here
+            after, _ = jax.lax.scan(panel, carry, at)
+        return after, carry[1]
 
-    grouped = jax.tree.map(lambda u: _groups(u, every), edges)
+    left = jax.tree.map(lambda u: u[:-1].reshape(-1, every), edges)
+    right = jax.tree.map(lambda u: u[1:].reshape(-1, every), edges)
     t = jnp.asarray(t, dtype=jnp.result_type(float))
-    (_, end), states = jax.lax.scan(sample, (t, state), grouped)
+    (_, end), states = jax.lax.scan(sample, (t, state), (left, right))
     return end, states
-
-
-def _groups(u: Any, every: int) -> Any:
-    # Each group carries its closing edge, which is also the next group's first.
-    body = u[:-1].reshape(-1, every)
-    closing = u[every::every]
-    return jnp.concatenate([body, closing[:, None]], axis=1)

@@ -1,0 +1,192 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # First fit
+#
+# Ten minutes from a measured motion to backlash, stiffness and damping, to the place where that model fails, and to a
+# better one. The record comes with the package: a link hangs behind a joint with play, its base is shaken, and two
+# encoders watch. Somebody forgot to mention a load on the link.
+
+# %%
+from importlib.resources import files
+
+import matplotlib.pyplot as plt
+import numpy as np
+from IPython.display import HTML
+
+import jaxbacklash as jb
+from jaxbacklash.fitting import compare
+from jaxbacklash.report import figures
+from jaxbacklash.report.fit_report import Motion
+from jaxbacklash.report.result import stage
+
+# %% [markdown]
+# The fits need double precision, and compiled code is worth keeping for the next time. Importing the package changes
+# nothing, so a program says once that it wants both.
+
+# %%
+jb.start()
+
+# %% [markdown]
+# ## The record
+#
+# One row a sample: time `t` in s, base motion `x` in rad, and `z`, the motion of the link against the base, in rad.
+# A second record of the same joint, shaken in another way, is kept aside for the end.
+
+# %%
+data = files("jaxbacklash") / "data"
+record = jb.read_record(data / "demo_train.csv")
+heldout = jb.read_record(data / "demo_heldout.csv")
+print(record.summary())
+print(heldout.summary())
+
+# %%
+figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(9, 4), layout="constrained")
+above.plot(record.t, np.degrees(record.channels["x"]), lw=0.8)
+below.plot(record.t, np.degrees(record.channels["z"]), lw=0.8)
+above.set(ylabel="base x [deg]")
+below.set(ylabel="link - base z [deg]", xlabel="time [s]")
+plt.show()
+
+# %% [markdown]
+# Look before you fit. The picture below shows how often the joint passes each relative position and speed. In the
+# middle the link coasts from one contact to the other at almost constant speed: that is the play.
+
+# %%
+motion = Motion(record, "z")
+HTML(figures.to_svg(figures.phase_plane(motion.z, motion.dz, edges=None)))
+
+# %% [markdown]
+# ## The base model
+#
+# Backlash, contact stiffness and viscous damping. With base motion alone, stiffness and damping can only be told per
+# unit inertia; here the inertia of the link is known, 3.16 kg m^2.
+
+# %%
+base = jb.fit(record, inertia=3.16, heldout=heldout)
+print(base)
+
+# %% [markdown]
+# Read it from the top:
+#
+# * The **noise** of both encoders was estimated from the record; nothing was told.
+# * The **prediction error** is the number to watch. Every 0.2 s the model starts afresh from an estimated state and
+#   predicts what follows; 1.00 would mean that only noise is left. Here it is several times that, and so it is on the
+#   **held-out** record, to which nothing was fitted.
+# * The **parameters** carry standard errors. They have been widened by the misfit, but no widening makes a wrong model
+#   right: as long as the first number is not near 1, the play may be off by far more than its error says.
+# * The last lines say how many **starting points** came to the same answer, and give the verdict in words.
+#
+# By eye, nothing seems wrong. Dots are measured, lines are the model, stretch A is the worst of the record.
+
+# %%
+score = base.score
+HTML(
+    figures.to_svg(
+        figures.measured_against_model(
+            score.t,
+            score.measured,
+            score.predicted,
+            window_starts=score.window_times,
+            label="z",
+            unit="rad",
+            noise=base.noise[0],
+        )
+    )
+)
+
+# %% [markdown]
+# ## Where it fails
+#
+# In units of the noise the failure is plain. It is large where the base swings slowly and far, where the link stays in
+# the play for long and only small torques move it. So the contact is not the first suspect; a load that acts on the
+# link itself is, and the link hangs. The picture does not prove it. The next fit does.
+
+# %%
+HTML(
+    figures.to_svg(
+        figures.residual_in_time(
+            score.t, score.residual, window_edges=score.window_times, window_rms=score.window_rms
+        )
+    )
+)
+
+# %% [markdown]
+# ## Adding what is missing
+#
+# Effects are added by name. These are known (your own class would appear here too):
+
+# %%
+print(", ".join(jb.catalogue()))
+
+# %%
+full = jb.fit(record, inertia=3.16, effects=["gravity"], heldout=heldout)
+print(full)
+
+# %% [markdown]
+# The error has come down to the noise, and `gravity.G` is negative: the link hangs. Look also at how far the play and
+# the damping have moved, by many times the errors that the base model gave them. That is what a missing load does to a
+# fit that does not know it.
+
+# %% [markdown]
+# ## The record it has never seen
+#
+# A model with more parameters always fits better, so the judge is the record that was kept aside. Parameters stay as
+# they are; only the state at the start of each window is estimated.
+
+# %%
+HTML(figures.to_svg(figures.error_by_stage([stage(base), stage(full, added="gravity")])))
+
+# %% [markdown]
+# The same in words, for any model and any record:
+
+# %%
+print(compare(base.system, heldout))
+
+# %%
+print(compare(full.system, heldout))
+
+# %% [markdown]
+# ## What to keep
+#
+# A model is a small text file, meant to be read and edited. `jaxbacklash compare` and `jaxbacklash simulate` take it.
+
+# %%
+print(jb.dump_model(full.system))
+
+# %% [markdown]
+# ## When the input is wrong
+#
+# Input that cannot be used is refused with one sentence: where, what was found, what is wanted. Here a column that does
+# not exist, and angles in degrees that nobody converted.
+
+# %%
+try:
+    jb.read_record(data / "demo_train.csv", columns={"z": "encoder_2"})
+except jb.BadInput as error:
+    print(error)
+
+# %%
+try:
+    jb.read_record(data / "demo_train.csv", scales={"x": 57.3, "z": 57.3})
+except jb.BadInput as error:
+    print(error)
+
+# %% [markdown]
+# ## Your own record
+#
+# The same on the command line, with a report to look at:
+#
+# ```sh
+# jaxbacklash fit run1.csv --inertia 3.16 --columns x=enc1,z=enc2 --unit x=deg,z=deg --out fit1
+# ```

@@ -1,0 +1,181 @@
+"""The fit on records whose truth is known: what it finds, and what it says it cannot find."""
+
+import json
+
+import numpy as np
+import pytest
+
+import jaxbacklash as jb
+from jaxbacklash.effects import CoulombGround, Preload
+from jaxbacklash.excitation import Multisine
+from jaxbacklash.fitting.levenberg import minimise
+from jaxbacklash.models import linear_oscillator
+from jaxbacklash.simulation import as_record
+
+TRUTH = {"backlash": 0.02618, "stiffness": 13000.0, "damping": 12.0}
+
+
+def measured(system, amplitudes, *, force=False, seed=0, noise=3e-5, duration=12.0, rate=500.0, **start):
+    """A noisy record of a system under a multisine at 1.1, 2.9 and 5.3 Hz."""
+    rng = np.random.default_rng(seed)
+    omegas = 2 * np.pi * np.array([1.1, 2.9, 5.3])
+    drive = Multisine(np.asarray(amplitudes), omegas, np.array([0.0, 1.0, 2.0]), as_force=force)
+    clean = as_record(jb.simulate(system, drive, duration=duration, rate=rate, **start), system)
+    motions = {n: v + noise * rng.standard_normal(v.size) for n, v in clean.channels.items() if n != "F"}
+    return clean.replace(**motions)
+
+
+def joint(**changes):
+    return jb.base_motion_joint(3.16, *(changes.get(name, value) for name, value in TRUTH.items()))
+
+
+def assert_holds(found, truth, sigmas=4.5):
+    for name, value in truth.items():
+        estimate = found.parameters[name]
+        assert estimate.verdict == "found"
+        assert abs(estimate.value - value) < sigmas * estimate.stderr, f"{name}: {estimate}"
+
+
+def test_base_motion():
+    found = jb.fit(measured(joint(), [0.05, 0.02, 0.01]), inertia=3.16)
+    assert_holds(found, TRUTH)
+    assert found.score.rms == pytest.approx(1.0, abs=0.05)
+    assert found.tied
+    assert found.agreeing == found.tried == 4
+    text = str(found)
+    assert "backlash (total play)" in text
+    assert "4 of 4 starts" in text
+
+
+def test_absolute_motion_instead_of_relative():
+    record = measured(joint(), [0.05, 0.02, 0.01])
+    x, z = record.channels["x"], record.channels["z"]
+    rng = np.random.default_rng(8)
+    clean = jb.Record(record.t, {"x": x + 3e-5 * rng.standard_normal(x.size), "y": x + z})
+    found = jb.fit(clean, inertia=3.16, starts=1)
+    for name, value in TRUTH.items():
+        assert found.parameters[name].value == pytest.approx(value, rel=3e-3)
+
+
+def test_force_driven_with_and_without_inertia():
+    system = jb.System(3.16, joint().contact, joint().damper, observed="y")
+    record = measured(system, [80.0, 60.0, 50.0], force=True)
+    assert_holds(jb.fit(record, inertia=3.16, starts=1), TRUTH)
+    assert_holds(jb.fit(record, starts=1), TRUTH | {"inertia": 3.16})
+
+
+def test_free_decay():
+    clean = jb.simulate(joint(), duration=6.0, rate=500.0, y0=0.06, dy0=0.0)
+    rng = np.random.default_rng(4)
+    record = jb.Record(np.asarray(clean.t), {"z": np.asarray(clean.y) + 3e-5 * rng.standard_normal(clean.t.size)})
+    assert_holds(jb.fit(record, inertia=3.16, starts=1), TRUTH)
+
+
+def test_several_records_share_parameters():
+    one = measured(joint(), [0.05, 0.02, 0.01], seed=1, duration=6.0)
+    two = measured(joint(), [0.03, 0.03, 0.02], seed=2, duration=6.0)
+    both = jb.fit([one, two], inertia=3.16, starts=1)
+    assert_holds(both, TRUTH)
+    assert len(both.scores) == 2
+    alone = [jb.fit(r, inertia=3.16, starts=1) for r in (one, two)]
+    for name in TRUTH:
+        information = sum(a.parameters[name].stderr ** -2 for a in alone)
+        assert both.parameters[name].stderr < 1.3 * information**-0.5
+
+
+def test_records_of_different_rates_are_refused():
+    one = measured(joint(), [0.05, 0.02, 0.01], duration=4.0)
+    two = measured(joint(), [0.05, 0.02, 0.01], duration=4.0, rate=400.0)
+    with pytest.raises(jb.BadInput, match="--resample-rate 500"):
+        jb.fit([one, two], inertia=3.16)
+
+
+def test_an_effect_added_by_hand():
+    system = joint().with_effects(CoulombGround(3.0))
+    record = measured(system, [0.05, 0.02, 0.01])
+    base = jb.fit(record, inertia=3.16, starts=1)
+    assert base.score.median > 1.5
+    assert "misses something" in str(base)
+    full = jb.fit(record, inertia=3.16, effects=["coulomb_ground"], starts=1)
+    assert_holds(full, TRUTH | {"coulomb_ground.Tc": 3.0})
+    assert full.score.median < 1.1
+
+
+def test_linear_model():
+    record = measured(linear_oscillator(3.16, 13000.0, 12.0), [0.02, 0.01, 0.01])
+    found = jb.fit(record, model="linear", inertia=3.16, starts=1)
+    assert_holds(found, {"stiffness": 13000.0, "damping": 12.0})
+    assert "backlash" not in found.parameters
+
+
+def test_a_record_that_never_leaves_the_play():
+    found = jb.fit(measured(joint(), [0.002, 0.001, 0.001]), inertia=3.16, starts=1)
+    for name in ("backlash", "stiffness"):
+        estimate = found.parameters[name]
+        assert estimate.verdict == "not determined"
+        assert estimate.value is None
+        assert "never leaves the play" in estimate.why
+    assert found.parameters["damping"].value == pytest.approx(12.0, rel=0.02)
+    assert "z never leaves the play" in str(found)
+
+
+def test_a_record_that_touches_one_side_only():
+    system = joint().with_effects(Preload(40.0))
+    record = measured(system, [0.004, 0.003, 0.002], y0=0.0162)
+    assert record.channels["z"].min() > -0.013
+    found = jb.fit(record, inertia=3.16, effects=["preload"], starts=1)
+    estimate = found.parameters["backlash"]
+    assert estimate.verdict == "one-sided"
+    assert estimate.value is None
+    assert "only the upper edge" in estimate.why
+    assert found.parameters["stiffness"].value == pytest.approx(13000.0, rel=0.01)
+
+
+def test_profile_likelihood_agrees_with_the_curvature():
+    found = jb.fit(measured(joint(), [0.05, 0.02, 0.01], duration=4.0), inertia=3.16, starts=1, profile=True)
+    for estimate in found.parameters.values():
+        low, high = estimate.ci95
+        assert high - low == pytest.approx(2 * 1.96 * estimate.stderr, rel=0.15)
+        assert low < estimate.value < high
+
+
+def test_another_length_in_the_same_bucket_compiles_nothing():
+    before = None
+    for duration in (5.0, 5.3):
+        jb.fit(measured(joint(), [0.05, 0.02, 0.01], duration=duration), inertia=3.16, starts=1)
+        count = minimise._cached._cache_size() if hasattr(minimise, "_cached") else None
+        if before is not None and count is not None:
+            assert count == before
+        before = count
+    assert before is not None
+
+
+@pytest.mark.shared
+@pytest.mark.parametrize("name", ["p01", "p02", "p03"])
+def test_practice_records_without_anything_missing(shared, name):
+    folder = shared / "records" / name
+    answer = json.loads((folder / "answer.json").read_text())
+    truth = {key: answer["truth"][key] for key in TRUTH}
+    found = jb.fit(
+        jb.read_record(folder / "train.csv"), inertia=answer["truth"]["J"], heldout=jb.read_record(folder / "heldout.csv")
+    )
+    assert_holds(found, truth, 3.5)
+    for key, within in (("backlash", 1e-3), ("stiffness", 1e-3), ("damping", 5e-3)):
+        assert found.parameters[key].value == pytest.approx(truth[key], rel=within)
+    assert 0.95 < found.score.median < 1.05
+    assert 0.95 < found.heldout.median < 1.05
+
+
+@pytest.mark.shared
+def test_motor_driven_axis(shared):
+    """EMPS, published values of PROVENANCE: M 95.1089 kg, Fv 203.5034 N s/m, Fc 20.3935 N."""
+    record = jb.read_record(
+        shared / "real" / "EMPS" / "DATA_EMPS.mat", columns={"t": "t", "F": "vir", "y": "qm"}, scales={"F": 35.15065}
+    )
+    for effects in (["coulomb_ground"], ["coulomb_ground", "preload"]):
+        found = jb.fit(record, model="free", effects=effects, translational=True, starts=1)
+        assert found.parameters["inertia"].value == pytest.approx(95.1089, rel=0.01)
+        assert found.parameters["damping"].value == pytest.approx(203.5034, rel=0.03)
+        assert found.parameters["coulomb_ground.Tc"].value == pytest.approx(20.3935, rel=0.03)
+    without = jb.fit(record, model="free", translational=True, starts=1)
+    assert without.score.rms > 2 * found.score.rms
