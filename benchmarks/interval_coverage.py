@@ -120,7 +120,8 @@ def true_motion(driven: str, seconds: float) -> dict[str, np.ndarray]:
 
 def measured(case: Case, seed: int) -> jb.Record:
     """The record of a case with the noise of one seed."""
-    true, rng = true_motion(case.driven, case.seconds), np.random.default_rng(seed)
+    true = true_motion(case.driven, case.seconds)
+    rng = np.random.default_rng([seed, *str(case).encode()])  # noise of its own for every case
     noisy = {
         name: true[name] + case.sigma * rng.standard_normal(true["t"].size)
         for name in (("x", "z") if case.driven == "base" else ("y",))

@@ -131,7 +131,7 @@ def test_shooting_windows_take_the_same_steps_as_simulate():
     motion = np.asarray(predictions(problem, guess).motion)[0]
     x = windows.basis[0] @ np.concatenate([windows.coefficients[0], windows.coefficients[1][:5]])
     dx = windows.basis[1] @ np.concatenate([windows.coefficients[0], windows.coefficients[1][:5]])
-    drive = Panelled(0.0, 0.002, jnp.asarray(x), jnp.asarray(dx), 0.0 * x)
+    drive = Panelled(0.0, 0.002, jnp.asarray(x), jnp.asarray(dx), jnp.zeros(x.size))
     y0, dy0 = float(guess.starts[0, 0]), float(guess.starts[1, 0])
     path = jb.simulate(system, drive, duration=0.1, rate=500.0, y0=y0, dy0=dy0, panels_per_sample=1)
     np.testing.assert_array_equal(np.asarray(path.z)[:-1], motion)

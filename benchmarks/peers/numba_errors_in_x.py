@@ -16,7 +16,7 @@ factorisation is out of the question at this size:
 * "grouped": scipy's own grouped differences, by `jac_sparsity`;
 * "explicit": a sparse matrix, filled by numba from forward differences that perturb all windows at once;
 * "operator": the same matrix behind a `LinearOperator` that whitens the unknowns by the arrow-shaped Cholesky factor of
-  the normal equations at the start of each stage, so that LSMR needs ten steps instead of hundreds.
+  the normal equations, at the start, after three steps and before the ties, so that LSMR needs few steps.
 
 The first two are whitened window by window; left as they are, LSMR needs ten times as many steps still.
 """
@@ -117,35 +117,38 @@ def simulate(theta, starts, local, basis, first, panels, h, inertia, z, base, en
 
 
 @njit(cache=True, error_model="numpy")
-def differences(theta, starts, local, basis, first, panels, h, inertia, z, base, ends, columns, end_columns):
-    """Forward differences of all windows at once, columns (m, w, q) of z and end_columns (2, w, q) of the ends.
+def differences(theta, starts, local, basis, first, panels, h, inertia, z, base, ends, units, weight, sharp, out, out_ends):
+    """Forward differences of all windows at once, weighted: out (m, w, q) of z and out_ends (2, w, q) of the ends.
 
-    The q = 3 + 2 + m + 5 columns: parameters (by a relative change), a window's start, its coefficients and the next five.
+    The q = 3 + 2 + m + 5 columns: parameters in `units` (3,), a window's start, its coefficients and the next five.
     """
     simulate(theta, starts, local, basis, first, panels, h, inertia, z, base, ends)
-    moved, scratch, moved_ends = np.empty_like(z), np.empty_like(z), np.empty_like(ends)
-    for i in range(columns.shape[2]):
+    count, (samples, windows) = out.shape[2], z.shape
+    moved, moved_ends = np.empty((count, samples, windows)), np.empty((count, 2, windows))
+    for i in range(count):
         t, s, c = theta.copy(), starts.copy(), local.copy()
-        step = 1e-7 if i < 3 else 1e-8
         if i < 3:
-            t[i] += step * t[i]
+            t[i] += 1e-7 * units[i]
         elif i < 5:
-            s[i - 3] += step
+            s[i - 3] += 1e-8
         else:
-            c[i - 5] += step
-        simulate(t, s, c, basis, first, panels, h, inertia, moved, scratch, moved_ends)
-        for w in range(z.shape[1]):
-            for n in range(z.shape[0]):
-                columns[n, w, i] = (moved[n, w] - z[n, w]) / step
-            end_columns[0, w, i] = (moved_ends[0, w] - ends[0, w]) / step
-            end_columns[1, w, i] = (moved_ends[1, w] - ends[1, w]) / step
+            c[i - 5] += 1e-8
+        simulate(t, s, c, basis, first, panels, h, inertia, moved[i], base, moved_ends[i])
+    for w in range(windows):
+        for i in range(count):
+            for n in range(2):
+                out_ends[n, w, i] = (moved_ends[i, n, w] - ends[n, w]) * (1e7 if i < 3 else 1e8) * sharp[n]
+    for n in range(samples):
+        for w in range(windows):
+            for i in range(count):
+                out[n, w, i] = (moved[i, n, w] - z[n, w]) * (1e7 if i < 3 else 1e8) * weight[n, w]
 
 
 class Problem:
     """A record cut into windows, x on a spline.
 
     The unknowns (3 + w (m + 2) + 5,): parameters over their start; by window m coefficients, y and y'; the last five
-    coefficients. In the Jacobian a parameter's column is that of its logarithm.
+    coefficients.
 
     Args: t, x, z (n,) [s, rad, rad]; inertia [kg m^2]; start {name: value}; sigma_z, sigma_x [rad]; intervals, the spline's
     m a window; window [s]; longest panel [s].
@@ -183,13 +186,14 @@ class Problem:
         self.first_guess[self.at_starts] = link(at), link(at, 1)
         self.first_guess[self.at_coefficients] = self.coefficients
         own = np.vstack([np.tile(np.arange(3)[:, None], w), self.at_starts, self.at_local]).T
-        self.motion_columns = np.broadcast_to(own, (self.samples, *own.shape)).reshape(-1)
-        tie = [np.column_stack([own[:-1], self.at_starts[i, 1:]]) for i in range(2)]
-        self.tie_columns = np.concatenate(tie).ravel()
-        row = self.first[:-1 : self.panels, None] + np.arange(6)
-        self.base_columns = self.at_local[row].transpose(0, 2, 1).ravel()
-        values = self.basis[0, :-1 : self.panels]
-        self.base_data = (values[:, None, :] * self.base_weight[:, :, None]).ravel()
+        ties = [np.column_stack([own[:-1], self.at_starts[i, 1:]]) for i in range(2)]
+        at_base = self.at_local[self.first[:-1 : self.panels, None] + np.arange(6)].transpose(0, 2, 1)
+        motion = np.broadcast_to(own, (self.samples, *own.shape))
+        columns = motion, at_base, self.at_coefficients, *ties
+        self.columns = np.concatenate([c.ravel() for c in columns]).astype(np.int32)
+        values = self.basis[0, :-1 : self.panels, None, :] * self.base_weight[:, :, None]
+        self.constant = np.append(values, np.full(self.at_coefficients.size, self.whisper))
+        self.cached = None
         self.seconds_spline = time.perf_counter() - began
 
     def _cut(self, values):
@@ -203,31 +207,33 @@ class Problem:
         return p[:3] * self.scale, starts, local, self.basis, self.first, self.panels, self.h, self.inertia, z, base, ends
 
     def residual(self, p):
-        """All residuals in units of the noise, at the unknowns p: motion, ties in the second stage, base motion, whisper."""
+        """All residuals in units of the noise, at the unknowns p: motion, base motion, whisper, ties."""
         arguments = self._arguments(p)
         simulate(*arguments)
         starts, (z, base, ends) = arguments[1], arguments[-3:]
-        ties = ((ends[:, :-1] - starts[:, 1:]) * self.sharp).ravel() if self.tied else ()
-        whisper = (p[self.at_coefficients] - self.coefficients) * self.whisper
         motion, base = (z - self.measured) * self.weight, (base - self.base) * self.base_weight
-        return np.concatenate([motion.ravel(), ties, base.ravel(), whisper])
+        whisper = (p[self.at_coefficients] - self.coefficients) * self.whisper
+        ties = (ends[:, :-1] - starts[:, 1:]) * self.sharp if self.tied else np.empty(0)
+        return np.concatenate([motion.ravel(), base.ravel(), whisper, ties.ravel()])
 
     def jacobian(self, p):
         """Its sparse Jacobian, by forward differences."""
-        q, w = self.m + 10, self.windows
-        columns, ends = np.empty((*self.weight.shape, q)), np.empty((2, w, q))
-        differences(*self._arguments(p), columns, ends)
-        columns *= self.weight[:, :, None]
-        ties, where, rows = (), (), 0
+        if self.cached is not None and self.cached[0] == self.tied and np.array_equal(self.cached[1], p):
+            return self.cached[2]
+        q, w, n, held = self.m + 10, self.windows, self.weight.size, self.at_coefficients
+        data, ends = np.empty(n * q + self.constant.size), np.empty((2, w, q))
+        motion = data[: n * q].reshape(*self.weight.shape, q)
+        differences(*self._arguments(p), self.scale, self.weight, self.sharp[:, 0], motion, ends)
+        data[n * q :] = self.constant
+        lengths = [[q, 6, 1], [n, n, held.size]]
         if self.tied:
-            following = np.full((2, w - 1, 1), -1.0)
-            ties = (np.concatenate([ends[:, :-1], following], axis=2) * self.sharp[:, :, None]).ravel()
-            where, rows = self.tie_columns, 2 * (w - 1)
-        held, n = self.at_coefficients, self.weight.size
-        data = np.concatenate([columns.ravel(), ties, self.base_data, np.full(held.size, self.whisper)])
-        indices = np.concatenate([self.motion_columns, where, self.base_columns, held])
-        lengths = np.repeat([q, q + 1, 6, 1], [n, rows, n, held.size])
-        return csr_matrix((data, indices.astype(np.int32), np.append(0, np.cumsum(lengths))), (lengths.size, p.size))
+            following = np.broadcast_to(-self.sharp[:, :, None], (2, w - 1, 1))
+            data = np.append(data, np.concatenate([ends[:, :-1], following], axis=2))
+            lengths = [[*lengths[0], q + 1], [*lengths[1], 2 * (w - 1)]]
+        rows = np.append(0, np.cumsum(np.repeat(*lengths)))
+        matrix = csr_matrix((data, self.columns[: data.size], rows), (rows.size - 1, p.size))
+        self.cached = self.tied, p.copy(), matrix
+        return matrix
 
 
 class Windowed:
@@ -273,7 +279,7 @@ class Arrow:
         return np.append(self.corner @ (g[:3] - self.border.T @ inner), inner)
 
 
-def fit(t, x, z, inertia, start, *, sigma_z, sigma_x, intervals, jacobian="operator", ftol=1e-7, **options):
+def fit(t, x, z, inertia, start, *, sigma_z, sigma_x, intervals, jacobian="operator", ftol=3e-8, **options):
     """Parameters, cost (half the sum of squares), nfev, seconds (without compiling and the spline), seconds_spline.
 
     Arguments as `Problem`'s; jacobian: "grouped", "explicit" or "operator".
@@ -282,12 +288,13 @@ def fit(t, x, z, inertia, start, *, sigma_z, sigma_x, intervals, jacobian="opera
     problem.residual(problem.first_guess)
     problem.jacobian(problem.first_guess)  # both compile
     began, p, evaluations = time.perf_counter(), problem.first_guess, 0
-    for problem.tied in (False, True):
+    rounds = ((False, 3), (False, None), (True, None)) if jacobian == "operator" else ((False, None), (True, None))
+    for problem.tied, most in rounds:
         matrix = problem.jacobian(p)
         normal = (matrix.T @ matrix).tocsr()
         normal = normal + diags(1e-12 * normal.diagonal() + (normal.diagonal() == 0.0)).tocsr()
         white = (Arrow if jacobian == "operator" else Windowed)(problem, normal)
-        found = _stage(problem, p, white, jacobian, ftol)
+        found = _stage(problem, p, white, jacobian, ftol, most)
         p, evaluations = found.p, evaluations + found.nfev
     numbers = dict(zip(NAMES, map(float, p[:3] * problem.scale)))
     seconds = time.perf_counter() - began
@@ -297,7 +304,7 @@ def fit(t, x, z, inertia, start, *, sigma_z, sigma_x, intervals, jacobian="opera
     }  # fmt: skip
 
 
-def _stage(problem, p, white, jacobian, ftol):
+def _stage(problem, p, white, jacobian, ftol, most):
     # scipy's first trust region is as large as the first guess: at the origin it would be one standard error.
     begin = np.full(p.size, 1.0 if jacobian == "grouped" else FAR)
     unit = FAR if jacobian == "grouped" else 1.0
@@ -315,7 +322,7 @@ def _stage(problem, p, white, jacobian, ftol):
             matrix.shape, matvec=lambda v: matrix @ white.apply(v), rmatvec=lambda v: white.adjoint(turned @ v), dtype=float
         )
 
-    settings = {"tr_solver": "lsmr", "tr_options": {"regularize": False}, "ftol": ftol, "xtol": None, "gtol": None}
+    settings = {"tr_solver": "lsmr", "tr_options": {"regularize": False}, "ftol": ftol, "xtol": None, "gtol": None, "max_nfev": most}
     if jacobian == "grouped":
         settings |= {"jac_sparsity": problem.jacobian(p) @ abs(white.matrix) != 0, "x_scale": "jac"}
     else:

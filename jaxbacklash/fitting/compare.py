@@ -10,7 +10,7 @@ from ..errors import BadInput
 from ..records import Record
 from ..signals import noise_level
 from ..system import System
-from .fit import ADEQUATE, SCORE_WINDOW, predict_record
+from .fit import SCORE_WINDOW, predict_record
 from .score import Score
 
 
@@ -27,7 +27,7 @@ class Comparison:
     @property
     def adequate(self) -> bool:
         """True when what the model leaves is noise."""
-        return self.score.median < 1.15 and self.score.rms < 2.0 * ADEQUATE
+        return self.score.median < 1.1 and self.score.rms < 1.3
 
     def sentence(self) -> str:
         """The comparison in one or two sentences."""

@@ -76,8 +76,8 @@ class Fit:
 
     @property
     def adequate(self) -> bool:
-        """True when what the model leaves is noise: the median window within 15 % of it, and all windows within 50 %."""
-        return all(s.median < 1.15 and s.rms < 1.5 for s in self.scores)
+        """True when what the model leaves is noise: the median window within a tenth of it, all windows within three tenths."""
+        return all(s.median < 1.1 and s.rms < 1.3 for s in self.scores)
 
     def __str__(self) -> str:
         from .print_fit import text
@@ -257,7 +257,7 @@ def predict_record(
 
 def _freedom(unknowns: Unknowns, windows: Windows) -> float:
     samples = float(np.sum(np.asarray(windows.weight) > 0.0))
-    moving = float(np.sum(np.asarray(windows.x_weight) > 0.0))
+    moving = float(np.sum(np.asarray(windows.input_weight) > 0.0))
     used = float(np.sum(np.any(np.asarray(windows.weight) > 0.0, axis=1)))
     return samples + moving - used * (windows.intervals + unknowns.starts.shape[0])
 

@@ -110,9 +110,9 @@ def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout
 
 def _spline_residual(w: Any) -> np.ndarray:
     if not w.intervals:
-        return np.asarray(w.x_weight)
+        return np.asarray(w.input_weight)
     own = np.asarray(w.coefficients)
     following = np.concatenate([own[1:], np.zeros_like(own[:1])])
     local = np.concatenate([own, following[:, : w.basis.shape[2] - w.intervals]], axis=1)
     base = local @ np.asarray(w.basis)[0, : -1 : w.every].T
-    return (base - np.asarray(w.x)) * np.asarray(w.x_weight)
+    return (base - np.asarray(w.input)) * np.asarray(w.input_weight)

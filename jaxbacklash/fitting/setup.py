@@ -147,7 +147,7 @@ def first_guess(problem: Problem) -> Unknowns:
 
 
 def _relative(w: Windows, y: jnp.ndarray, dy: jnp.ndarray) -> tuple[jnp.ndarray, jnp.ndarray]:
-    if not w.intervals:
+    if not w.intervals or w.by_force:
         return y, dy
     own = jnp.asarray(w.coefficients)
     following = jnp.concatenate([own[1:], jnp.zeros_like(own[:1])])

@@ -1,10 +1,10 @@
 r"""Multiple shooting: the misfit of all windows side by side, and its derivatives in blocks.
 
 Unknowns: the parameters :math:`\theta` that are free (few), and per window a start s (state of the link) and the m
-coefficients c of the base-motion spline. Misfit, all in units of the noise:
+coefficients c of the input's spline (base motion, or a smooth force). Misfit, all in units of the noise:
 
 * measured minus predicted motion, window by window;
-* measured base motion minus the spline, so that the noise in x is carried through the model instead of ignored;
+* measured input minus the spline, so that the noise in x (or F) is carried through the model instead of ignored;
 * end of a window minus start of the next, where they are tied.
 
 Minimising over s and c is what whitening the residual with both noises amounts to, to first order; it also holds beyond it.
@@ -77,10 +77,10 @@ class Blocks(eqx.Module):
 
 
 class Prediction(eqx.Module):
-    """What one window predicts: ``motion`` (M,) measured channel, ``base`` (M,) spline at the samples, ``end`` (n,)."""
+    """What one window predicts: ``motion`` (M,) measured channel, ``input`` (M,) spline at the samples, ``end`` (n,)."""
 
     motion: Array
-    base: Array
+    input: Array
     end: Array
 
 
@@ -97,39 +97,41 @@ def predict(problem: Problem, theta: Array, start: Array, local: Array, t0: Arra
     """
     w = problem.windows
     system = unravel(problem.system, problem.parameters(theta))
-    x, dx = _base_motion(w, system.lag(), local)
-    drive = Panelled(t0, w.panel, x, dx, force)
+    u, du = _input(w, system.lag(), local)
+    zero = jnp.zeros(force.shape)
+    edges = (zero, zero, force + u, du) if w.by_force else (u, du, force, None)
+    drive = Panelled(t0, w.panel, *edges)
     state = tuple(start[i] for i in range(start.shape[0]))
     end, states = run_panels(
-        system, t0, state, drive.grid(t0, w.panel, x.shape[0] - 1), w.panel, w.every, system.has_play
+        system, t0, state, drive.grid(t0, w.panel, force.shape[0] - 1), w.panel, w.every, system.has_play
     )
     at = drive.grid(t0, w.panel, 0)
     samples = jax.tree.map(lambda u: u[: -1 : w.every], at)
     times = t0 + w.panel * w.every * jnp.arange(w.samples)
     motion = jax.vmap(system.output)(times, states, samples)
     if w.intervals:
-        base = w.basis[0, : -1 : w.every] @ local
+        measured = w.basis[0, : -1 : w.every] @ local
     else:
-        base = jnp.zeros((0,))
-    return Prediction(motion, base, jnp.stack(end))
+        measured = jnp.zeros((0,))
+    return Prediction(motion, measured, jnp.stack(end))
 
 
-def _base_motion(w: Windows, lag: Array | None, local: Array) -> tuple[Array, Array]:
+def _input(w: Windows, lag: Array | None, local: Array) -> tuple[Array, Array]:
     if not w.intervals:
         zero = jnp.zeros(w.basis.shape[1])
         return zero, zero
     if lag is None:
         return w.basis[0] @ local, w.basis[1] @ local
-    # The measured channel lags: it shows the motion that an equally delayed base would have caused. The Taylor series
+    # The measured channel lags: it shows the motion that an equally delayed input would have caused. The Taylor series
     # of a quintic ends after six terms, so it is exact within a knot interval.
-    x = dx = 0.0
+    u = du = 0.0
     factor: Any = 1.0
     for order in range(DEGREE + 1):
-        x = x + factor * (w.basis[order] @ local)
+        u = u + factor * (w.basis[order] @ local)
         if order < DEGREE:
-            dx = dx + factor * (w.basis[order + 1] @ local)
+            du = du + factor * (w.basis[order + 1] @ local)
         factor = -factor * lag / (order + 1)
-    return x, dx
+    return u, du
 
 
 def _local(coefficients: Array) -> Array:
@@ -148,11 +150,11 @@ def predictions(problem: Problem, unknowns: Unknowns) -> Prediction:
 
 
 def residuals(problem: Problem, unknowns: Unknowns, predicted: Prediction | None = None) -> tuple[Array, Array, Array]:
-    """Motion (W, M), base motion (W, M or 0) and tie (W, n) residuals in units of the noise."""
+    """Motion (W, M), input (W, M or 0) and tie (W, n) residuals in units of the noise."""
     w = problem.windows
     p = predictions(problem, unknowns) if predicted is None else predicted
     motion = (p.motion - w.measured) * w.weight
-    base = (p.base - w.x) * w.x_weight
+    base = (p.input - w.input) * w.input_weight
     following = jnp.concatenate([unknowns.starts[:, 1:], unknowns.starts[:, :1]], axis=1).T
     tie = (p.end - following) * _tie_weight(problem, unknowns)
     return motion, base, tie
@@ -188,7 +190,7 @@ def linearise(problem: Problem, unknowns: Unknowns) -> tuple[Blocks, Prediction]
     rows = jnp.concatenate(
         [
             tangents.motion * w.weight[:, None, :],
-            tangents.base * w.x_weight[:, None, :],
+            tangents.input * w.input_weight[:, None, :],
             tangents.end * tie_weight[:, None, :],
         ],
         axis=2,
@@ -244,7 +246,7 @@ def _ridge(problem: Problem, unknowns: Unknowns, blocks: Blocks, n: int) -> Bloc
     # Coefficients that hardly touch a sample (the end of a record, empty windows) are held by a whisper of a prior at
     # the smoothing spline; a thousandth of the weight of one sample changes no estimate.
     w = problem.windows
-    level = 1e-6 * jnp.max(w.x_weight, initial=0.0) ** 2
+    level = 1e-6 * jnp.max(w.input_weight, initial=0.0) ** 2
     change = unknowns.coefficients - w.coefficients
     slope = blocks.slope + jnp.pad(level * change, ((0, 0), (n, 0)))
     size = blocks.diagonal.shape[1]

@@ -1,8 +1,8 @@
 """A record cut into shooting windows, as arrays of fixed shapes.
 
 Window w covers samples w M ... (w+1) M - 1 and ends on the first sample of the next. All windows share one basis for the
-base motion: a quintic spline whose knots divide the window, so that window w needs its own m coefficients and the first five
-of window w + 1. Records are laid one behind the other with an empty window after each, which holds the trailing
+measured input (base motion, or a force that is smooth): a quintic spline whose knots divide the window, so that window w
+needs its own m coefficients and the first five of window w + 1. Records are laid one behind the other with an empty window after each, which holds the trailing
 coefficients; the number of windows is rounded up to a bucket, so that another record length does not compile anew.
 """
 
@@ -17,7 +17,7 @@ from scipy.interpolate import BSpline
 
 from ..errors import BadInput
 from ..records import Record
-from ..signals import DEGREE, choose_intervals, fit_spline, knots, noise_level
+from ..signals import DEGREE, NEGLIGIBLE, choose_intervals, fit_spline, is_smooth, knots, noise_level
 
 Array = Any
 LONGEST_PANEL = 2.0e-3
@@ -25,21 +25,22 @@ LONGEST_PANEL = 2.0e-3
 
 
 class Windows(eqx.Module):
-    """Arrays of W windows with M samples and P panels each, and m spline coefficients per window (m = 0: no base motion).
+    """Arrays of W windows with M samples and P panels each, and m spline coefficients per window (m = 0: no input, or a
+    rough force that is taken as exact, straight between its samples).
 
     ``t0`` (W,) start times [s]; ``measured`` (W, M); ``weight`` (W, M), 1/noise or 0 where there is no sample;
-    ``tie`` (W,), 1 where the window runs on into the next; ``x`` (W, M) measured base motion, ``x_weight`` (W, M);
-    ``force`` (W, P+1) at panel edges; ``coefficients`` (W, m) start of the spline; ``basis`` (6, P+1, m+5)
+    ``tie`` (W,), 1 where the window runs on into the next; ``input`` (W, M) measured input, ``input_weight`` (W, M), 1/its noise or 0;
+    ``force`` (W, P+1) exact force at panel edges; ``coefficients`` (W, m) start of the spline; ``basis`` (6, P+1, m+5)
     the splines and their derivatives at panel edges; ``starts`` (2, W) position and speed of the link from the smoothed data;
-    ``drop`` (2,) how sharply ends tie to starts [1/rad, s/rad].
+    ``drop`` (2,) how sharply ends tie to starts [1/rad, s/rad]; ``by_force`` True when the spline is of the force.
     """
 
     t0: Array
     measured: Array
     weight: Array
     tie: Array
-    x: Array
-    x_weight: Array
+    input: Array
+    input_weight: Array
     force: Array
     coefficients: Array
     basis: Array
@@ -47,6 +48,7 @@ class Windows(eqx.Module):
     drop: Array
     panel: Array
     every: int = eqx.field(static=True)
+    by_force: bool = eqx.field(static=True)
 
     @property
     def count(self) -> int:
@@ -107,11 +109,12 @@ def cut(records: Sequence[Record], window: float, *, longest_panel: float = LONG
     dt = lead.dt
     length = max(8, round(window / dt))
     every = max(1, int(np.ceil(dt / longest_panel - 1e-9)))
+    driver = _driver(records, length * dt)
     intervals = 0
-    if "x" in lead.channels:
-        intervals = max(choose_intervals(r.t, r.channels["x"], length * dt) for r in records)
+    if driver is not None:
+        intervals = max(choose_intervals(r.t, r.channels[driver], length * dt) for r in records)
         intervals = -(-intervals // 4) * 4  # a step of four keeps the number of compiled shapes small
-    parts = [_cut_one(r, length, every, intervals) for r in records]
+    parts = [_cut_one(r, length, every, intervals, driver) for r in records]
     total = bucket(sum(p["measured"].shape[0] for p in parts))
     stacked: dict[str, np.ndarray] = {}
     for key in parts[0]:
@@ -125,8 +128,9 @@ def cut(records: Sequence[Record], window: float, *, longest_panel: float = LONG
     starts = np.ascontiguousarray(stacked.pop("starts").T)
     panel = dt / every
     windows = Windows(
-        basis=_basis(length, every, intervals, panel), drop=drop, panel=np.asarray(panel), every=every, starts=starts, **stacked
-    )
+        basis=_basis(length, every, intervals, panel), drop=drop, panel=np.asarray(panel), every=every, starts=starts,
+        by_force=driver == "F", **stacked,
+    )  # fmt: skip
     layout = Layout(
         first=tuple(int(v) for v in np.cumsum([0, *counts[:-1]])),
         windows=tuple(c - 1 for c in counts),
@@ -137,6 +141,15 @@ def cut(records: Sequence[Record], window: float, *, longest_panel: float = LONG
         length=length,
     )
     return windows, layout
+
+
+def _driver(records: Sequence[Record], window: float) -> str | None:
+    """The measured input that gets a spline and shares in the misfit: base motion, or a force where it is smooth."""
+    if "x" in records[0].channels:
+        return "x"
+    if "F" in records[0].channels and all(is_smooth(r.t, r.channels["F"], window) for r in records):
+        return "F"
+    return None
 
 
 def _basis(length: int, every: int, intervals: int, panel: float) -> np.ndarray:
@@ -151,7 +164,7 @@ def _basis(length: int, every: int, intervals: int, panel: float) -> np.ndarray:
     return np.stack([splines(inside, nu=order) for order in range(DEGREE + 1)])
 
 
-def _cut_one(record: Record, length: int, every: int, intervals: int) -> dict[str, Any]:
+def _cut_one(record: Record, length: int, every: int, intervals: int, driver: str | None) -> dict[str, Any]:
     dt, samples = record.dt, record.samples
     count = -(-samples // length)
     rows = count + 1
@@ -168,17 +181,19 @@ def _cut_one(record: Record, length: int, every: int, intervals: int) -> dict[st
         "input_noise": 0.0,
     }
     motion = np.zeros(samples)
-    part["x"] = part["x_weight"] = np.zeros((rows, length if intervals else 0))
+    part["input"] = part["input_weight"] = np.zeros((rows, length if driver else 0))
     part["coefficients"] = np.zeros((rows, intervals))
-    if intervals:
-        fitted = fit_spline(record.t, record.channels["x"], record.t[0], length * dt / intervals)
-        part["x"] = _rows(record.channels["x"], rows, length)
-        part["x_weight"] = _rows(np.full(samples, 1.0 / fitted.noise), rows, length)
+    if driver is not None:
+        values = record.channels[driver]
+        fitted = fit_spline(record.t, values, record.t[0], length * dt / intervals)
+        part["input_noise"] = max(fitted.noise, NEGLIGIBLE * float(np.std(values)))
+        part["input"] = _rows(values, rows, length)
+        part["input_weight"] = _rows(np.full(samples, 1.0 / part["input_noise"]), rows, length)
         part["coefficients"] = _rows(fitted.coefficients, rows, intervals)
-        part["input_noise"] = fitted.noise
-        motion = fitted(record.t)
-    force = record.channels.get("F", np.zeros(samples))
-    part["force"] = _force_edges(force, rows, length, every)
+        if driver == "x":
+            motion = fitted(record.t)
+    exact = np.zeros(samples) if driver == "F" else record.channels.get("F", np.zeros(samples))
+    part["force"] = _force_edges(exact, rows, length, every)
     part["starts"] = _starts(record, motion, observed, length, t0)
     return part
 

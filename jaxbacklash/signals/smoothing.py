@@ -13,6 +13,8 @@ from scipy.interpolate import BSpline
 from scipy.linalg import cholesky_banded, cho_solve_banded
 
 DEGREE = 5
+NEGLIGIBLE = 1e-6
+"""Share of a signal's size below which a misfit of the spline does not count."""
 
 
 @dataclass(frozen=True)
@@ -79,12 +81,29 @@ def choose_intervals(t: np.ndarray, values: np.ndarray, window: float, *, least:
     most = max(least, int(window / (2.0 * dt)))
     candidates = sorted({min(most, max(least, round(least * 1.26**k))) for k in range(24)})
     best, lowest = candidates[0], np.inf
+    # A signal without noise would ask for ever more knots; a millionth of its size is as good as exact.
+    floor = (NEGLIGIBLE * np.std(values)) ** 2
     for intervals in candidates:
         fitted = fit_spline(t, values, t[0], window / intervals)
         free = t.size - fitted.coefficients.size
         if free < 16:
             break
-        criterion = t.size * np.log(max(fitted.noise**2 * free / t.size, 1e-300)) + 2.0 * fitted.coefficients.size
+        criterion = t.size * np.log(max(fitted.noise**2 * free / t.size + floor, 1e-300)) + 2.0 * fitted.coefficients.size
         if criterion < lowest:
             best, lowest = intervals, criterion
     return int(min(most, np.ceil(1.5 * best)))
+
+
+def is_smooth(t: np.ndarray, values: np.ndarray, window: float) -> bool:
+    """True when far fewer spline coefficients than samples follow the signal: not for steps or broadband noise.
+
+    Parameters
+    ----------
+    t, values : samples, shape (N,)
+    window : length over which knot counts are chosen [s]
+    """
+    dt = (t[-1] - t[0]) / (t.size - 1)
+    intervals = choose_intervals(t, values, window)
+    if intervals < 0.75 * window / (2.0 * dt):
+        return True
+    return fit_spline(t, values, t[0], window / intervals).noise < 1e-3 * float(np.std(values))

@@ -46,7 +46,6 @@ from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import BSpline, PPoly, make_lsq_spline
-from scipy.linalg import expm
 from scipy.optimize import brentq
 from scipy.sparse import bmat, csc_matrix, diags
 from scipy.sparse.linalg import splu
@@ -96,6 +95,19 @@ def force_bound(
     names = ("inertia", *JOINT) if inertia else JOINT
     steps = _Steps(rig, t, y, v, _Space(t[-1], spacing, force), names, forced=True)
     return Bound(names, _covariance(steps, sigma_y, 0.0), steps.space.misfit)
+
+
+def _exponential(matrix: np.ndarray) -> np.ndarray:
+    """The matrix exponential by Taylor's series, scaled and squared: no solve, whose threads would outweigh it."""
+    halvings = max(0, int(np.ceil(np.log2(max(np.abs(matrix).sum(axis=1).max(), 1e-300)))) + 1)
+    small = matrix / 2**halvings
+    term = result = np.eye(len(matrix))
+    for k in range(1, 17):
+        term = term @ small / k
+        result = result + term
+    for _ in range(halvings):
+        result = result @ result
+    return result
 
 
 class _Space:
@@ -178,7 +190,7 @@ class _Steps:
     def _flow(self, side: int, duration: float) -> np.ndarray:
         key = (side, round(duration * 1e12))
         if key not in self._known:
-            self._known[key] = expm(self._joint[side] * duration)
+            self._known[key] = _exponential(self._joint[side] * duration)
         return self._known[key]
 
     def _margin(self, side: int, w: np.ndarray) -> tuple[float, int]:
@@ -223,9 +235,9 @@ class _Steps:
             after = part * longest
             margin, beyond = self._margin(side, self._flow(side, after)[:_SIZE, :_SIZE] @ w)
             if margin < 0.0:
-                if self._margin(side, expm(small * before) @ w)[0] <= 0.0:
+                if self._margin(side, _exponential(small * before) @ w)[0] <= 0.0:
                     break  # it begins on the edge and grazes it: nothing to be gained from the other branch
-                root = brentq(lambda s: self._margin(side, expm(small * s) @ w)[0], before, after, xtol=1e-15)
+                root = brentq(lambda s: self._margin(side, _exponential(small * s) @ w)[0], before, after, xtol=1e-15)
                 return max(root, 1e-12), beyond
             before = after
         return longest, side
