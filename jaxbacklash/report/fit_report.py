@@ -17,6 +17,9 @@ from ..system import System
 from .figures import error_by_stage, measured_against_model, phase_plane, residual_in_time, restoring_force, to_svg
 from .html import Panel, write_report
 
+INSIDE = slice(10, -10)
+"""Samples that are drawn where derivatives count: at its two ends a spline's curvature is little more than noise."""
+
 
 def fit_report(fit: Fit, result: dict[str, Any], path: Path) -> None:
     """Write the page of a fit."""
@@ -87,7 +90,7 @@ def pictures(
         Panel(
             "Phase plane",
             f"{where}Relative position against relative speed, measured.",
-            to_svg(phase_plane(motion.z, motion.dz, edges=edges, unit=unit)),
+            to_svg(phase_plane(motion.z[INSIDE], motion.dz[INSIDE], edges=edges, unit=unit)),
             "phase",
         )
     )
@@ -100,7 +103,7 @@ def pictures(
                 "What the joint returns when inertia, damping and loads are taken off the measured motion, beside the model's law.",
                 to_svg(
                     restoring_force(
-                        motion.z, motion.restoring_torque(system), model_z=at, model_torque=_law(system, at), edges=edges,
+                        motion.z[INSIDE], motion.restoring_torque(system)[INSIDE], model_z=at, model_torque=_law(system, at), edges=edges,
                         unit=torque_unit, length_unit=unit,
                     )
                 ),
