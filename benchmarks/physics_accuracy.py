@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 import jaxbacklash as jb
-from jaxbacklash.excitation import AbstractExcitation, Chirp, Harmonic
+from jaxbacklash.excitation import AbstractExcitation, Chirp
 from jaxbacklash.parameters import with_values
 from jaxbacklash.simulation import simulate
 from tests.independent import events, motions
@@ -88,7 +88,8 @@ def study(case: Case, periods: int, steps: tuple[int, ...], widths: tuple[float,
         spent = (time.perf_counter() - begin) / periods
         order = "" if before is None else f"{np.log2(before / np.median(found)):5.2f}"
         before = np.median(found)
-        print(f"  {n:5d} panels ({case.period / n * 1e3:7.4f} ms)  {before:9.2e}  {found.max():9.2e}  {order:>5}   {spent * 1e3:6.2f} ms")
+        step = f"{n:5d} panels ({case.period / n * 1e3:7.4f} ms)"
+        print(f"  {step}  {before:9.2e}  {found.max():9.2e}  {order:>5}   {spent * 1e3:6.2f} ms")
         last[n] = float(found.max())
     print("  smoothed corner, adaptive Dopri8, half-width in half plays")
     before = None
@@ -110,7 +111,8 @@ def default_errors(all_cases: list[Case], periods: int) -> None:
         y, v = (a[1:] for a in events.simulate(case.exact, np.concatenate([[0.0], t])))
         default = _default(case, periods, samples, t, y, v)
         fit = errors(case, periods, samples, t, y, v)
-        print(f"  {case.name:<20} simulate {default.max():9.2e} (median {np.median(default):.1e})   fit {fit.max():9.2e} (median {np.median(fit):.1e})")
+        both = (f"{e.max():9.2e} (median {np.median(e):.1e})" for e in (default, fit))
+        print("  {:<20} simulate {}   fit {}".format(case.name, *both))
 
 
 def _default(case: Case, periods: int, samples: int, t: np.ndarray, y: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -131,7 +133,8 @@ def oracle() -> None:
             # At the turning point speed / acceleration is the time by which the period is missed.
             late = float(path.dy[-1]) / (amplitude - 1.0)
             row.append(abs(late) / exact)
-        print(f"  amplitude {amplitude:4.1f} half plays: " + "  ".join(f"{n} panels {e:.1e}" for n, e in zip((100, 400, 1600), row)))
+        told = "  ".join(f"{n} panels {e:.1e}" for n, e in zip((100, 400, 1600), row))
+        print(f"  amplitude {amplitude:4.1f} half plays: {told}")
 
 
 def main() -> None:

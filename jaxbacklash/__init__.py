@@ -3,16 +3,30 @@
 Importing this package changes nothing global. The fits need double precision: call `enable_double_precision` first.
 """
 
+from .effects import AsymmetricGap as AsymmetricGap
+from .effects import Contact as Contact
+from .effects import CoulombGround as CoulombGround
+from .effects import CoulombJoint as CoulombJoint
+from .effects import CubicStiffness as CubicStiffness
+from .effects import Dahl as Dahl
+from .effects import Damper as Damper
+from .effects import FlexibleLink as FlexibleLink
+from .effects import GapSpring as GapSpring
+from .effects import Gravity as Gravity
+from .effects import LinearGravity as LinearGravity
+from .effects import Preload as Preload
+from .effects import Spring as Spring
 from .errors import BadInput as BadInput
 from .errors import NoAnswer as NoAnswer
 from .fitting import Fit as Fit
+from .fitting import compare as compare
 from .fitting import fit as fit
 from .fitting import predict_record as predict_record
 from .mechanics import AbstractEffect as AbstractEffect
 from .mechanics import Instant as Instant
 from .mechanics import catalogue as catalogue
-from .model_file import dump as dump_model
-from .model_file import load as load_model
+from .model_file import dump_model as dump_model
+from .model_file import load_model as load_model
 from .models import base_motion_joint as base_motion_joint
 from .models import case_1 as case_1
 from .models import case_2 as case_2
@@ -25,6 +39,9 @@ from .program import start as start
 from .records import Record as Record
 from .records import read_record as read_record
 from .records import write_record as write_record
+from .sensors import SensorDelay as SensorDelay
+from .sensors import SensorGain as SensorGain
+from .sensors import SensorOffset as SensorOffset
 from .simulation import simulate as simulate
 from .system import System as System
 

@@ -92,13 +92,13 @@ def compare(
     from .commands import compare as command
 
     command.run(
-        model, record, out=out, as_json=json, columns=columns, unit=unit, scale=scale, resample=resample_rate or resample, window=window,
-        translational=translation,
+        model, record, out=out, as_json=json, columns=columns, unit=unit, scale=scale, resample=resample_rate or resample,
+        window=window, translational=translation,
     )  # fmt: skip
 
 
 @app.command(
-    epilog="Example: jaxbacklash simulate fit1/model.toml --excitation chirp:amplitude=0.07,f0=0,f1=12 --duration 30 --out sim.csv"
+    epilog="Example: jaxbacklash simulate fit1/model.toml --excitation chirp:amplitude=0.07,f0=0,f1=12 --out sim.csv"
 )
 def simulate(
     model: Annotated[Path, typer.Argument(help="A model file (TOML)")],
@@ -108,7 +108,8 @@ def simulate(
         typer.Option(
             "--excitation",
             help="harmonic:amplitude=,frequency= | chirp:amplitude=,f0=,f1= | multisine:amplitude=,low=,high=,lines= | "
-            "stepped:amplitude=,low=,high=,steps= | rest | FILE of a record whose x or F is used; amplitudes in rad (N m with --force)",
+            "stepped:amplitude=,low=,high=,steps= | rest | FILE of a record whose x or F is used; amplitudes in rad, "
+            "or in N m with --force",
         ),
     ] = "chirp:amplitude=0.07,f0=0,f1=12",
     force: Annotated[bool, typer.Option("--force", help="The excitation is a force or torque on the link")] = False,

@@ -6,7 +6,7 @@ Every excitation gives the `Drive` at a time; the default ``grid`` samples it at
 from __future__ import annotations
 
 import abc
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import equinox as eqx
 import jax
@@ -34,7 +34,7 @@ class AbstractSignal(AbstractExcitation):
     """An excitation made from one analytic signal, applied as base motion or as force."""
 
     if TYPE_CHECKING:  # each signal declares it as its last field, since it has a default
-        as_force: bool
+        as_force: ClassVar[bool]
 
     @abc.abstractmethod
     def signal(self, t: Scalar) -> Scalar:
@@ -126,7 +126,8 @@ class Sampled(AbstractExcitation):
     """A measured drive on a uniform grid: values and rates at the samples, cubic in between (Hermite).
 
     Attributes: ``t0`` time of the first sample and ``dt`` spacing [s]; ``x``, ``dx``, ``force`` of one length, and
-    ``dforce`` where the rate of the force is known. Rates come from a smoothing spline (`jaxbacklash.fitting.smoothing`), never from differences of raw samples.
+    ``dforce`` where the rate of the force is known. Rates come from a smoothing spline (`jaxbacklash.signals.smoothing`),
+    never from differences of raw samples.
     """
 
     t0: Scalar

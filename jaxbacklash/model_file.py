@@ -18,7 +18,7 @@ from .system import System
 OBSERVED = ("z", "y", "T")
 
 
-def dump(system: System, *, translational: bool = False, per_inertia: bool = False, heading: str = "") -> str:
+def dump_model(system: System, *, translational: bool = False, per_inertia: bool = False, heading: str = "") -> str:
     """The text of a model file; units stand beside the values as comments."""
 
     def entry(name: str, value: Any, unit: str) -> str:
@@ -39,7 +39,7 @@ def dump(system: System, *, translational: bool = False, per_inertia: bool = Fal
     return "\n".join(lines) + "\n"
 
 
-def load(path: str | Path) -> System:
+def load_model(path: str | Path) -> System:
     """Read a model file.
 
     Raises

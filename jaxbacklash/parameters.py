@@ -48,14 +48,18 @@ def _scalar(value: Any) -> Any:
     return value
 
 
-def param(*, default: float | None = None, **spec: Any) -> Any:
-    """Declare a parameter as a field of a law; see `Spec` for the keywords."""
+def param(*, default: float | None = None, required: bool = False, **spec: Any) -> Any:
+    """Declare a parameter as a field of a law; see `Spec` for the keywords.
+
+    Without a ``default`` the null value is taken, else the lower bound, else zero, so that a law can be built before its
+    values are known; ``required`` parameters must be given.
+    """
     described = Spec(**spec)
-    if default is None and described.null is not None:
-        default = described.null
     keywords: dict[str, Any] = {"metadata": {"spec": described}, "converter": _scalar}
-    if default is not None:
-        keywords["default"] = float(default)
+    if not required:
+        fallback = described.lower if np.isfinite(described.lower) else 0.0
+        known = described.null if default is None else default
+        keywords["default"] = float(fallback if known is None else known)
     return eqx.field(**keywords)
 
 
@@ -93,8 +97,8 @@ def values(tree: Any) -> dict[str, float]:
 
 def unravel(tree: Tree, vector: Any) -> Tree:
     """The same law or system with the values of ``vector``; works inside jit, grad and vmap."""
-    treedef = jax.tree.structure(tree)
-    return jax.tree.unflatten(treedef, [vector[i] for i in range(treedef.num_leaves)])
+    leaves, treedef = jax.tree.flatten(tree)
+    return jax.tree.unflatten(treedef, [vector[i] for i in range(len(leaves))])
 
 
 def replace(tree: Tree, **changes: float) -> Tree:

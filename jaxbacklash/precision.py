@@ -18,7 +18,7 @@ def require_double_precision(what: str) -> None:
     RuntimeError
         JAX is in single precision, whose rounding is larger than an encoder's noise.
     """
-    if not jax.config.jax_enable_x64:
+    if not jax.config.read("jax_enable_x64"):
         raise RuntimeError(
             f"{what} needs double precision: call jaxbacklash.enable_double_precision() "
             "(or set JAX_ENABLE_X64=1) before the first use of jax"

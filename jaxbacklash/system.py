@@ -26,7 +26,7 @@ class System(eqx.Module):
     joint transmits from the link to its base.
     """
 
-    inertia: Scalar = param(unit="kg m^2", lower=0.0, label="inertia of the link")
+    inertia: Scalar = param(unit="kg m^2", lower=0.0, required=True, label="inertia of the link")
     contact: Contact | Spring | None = eqx.field(metadata={"bare": True})
     damper: Damper = eqx.field(metadata={"bare": True})
     effects: dict[str, AbstractEffect] = eqx.field(default_factory=dict, metadata={"bare": True})

@@ -28,7 +28,7 @@ import time
 import numpy as np
 from numba import njit
 from scipy.interpolate import BSpline
-from scipy.linalg import block_diag, cho_factor, cholesky, cholesky_banded, solve_triangular
+from scipy.linalg import cholesky_banded
 from scipy.linalg.lapack import dtbtrs
 from scipy.optimize import least_squares
 from scipy.sparse import csr_matrix, diags

@@ -9,7 +9,7 @@ from pathlib import Path
 from .. import __version__
 from ..errors import BadInput
 from ..fitting import compare as compare_records
-from ..model_file import dump, load
+from ..model_file import dump_model, load_model
 from ..report.fit_report import compare_report
 from ..report.result import comparison_json
 from .common import json_text, out_folder, progress, read, write_text
@@ -31,7 +31,7 @@ def run(
     """Read both, predict window by window, print; write the result and the report when a folder is given."""
     if not 0.02 <= window <= 10.0:
         raise BadInput(f"--window {window:g}: wanted a length between 0.02 and 10 s")
-    system = load(model)
+    system = load_model(model)
     record = read(path, columns, unit, scale, resample)
     folder = out_folder(out)
     with progress(as_json) as tell:
@@ -42,7 +42,7 @@ def run(
         if folder is not None:
             tell("drawing the report", 0.8)
             write_text(folder / "result.json", json_text(result))
-            write_text(folder / "model.toml", dump(system, translational=translational))
+            write_text(folder / "model.toml", dump_model(system, translational=translational))
             compare_report(found, result, folder / "report.html")
     if as_json:
         sys.stdout.write(json_text(result))

@@ -13,7 +13,7 @@ from ..errors import BadInput
 from ..fitting import Fit
 from ..fitting import fit as fit_records
 from ..fitting.setup import add_effects
-from ..model_file import dump, load
+from ..model_file import dump_model, load_model
 from ..report.fit_report import fit_report
 from ..report.result import as_json as result_of
 from ..system import System
@@ -49,7 +49,7 @@ def run(
     folder = out_folder(out)
     system: System | None = None
     if model.endswith(".toml"):
-        system = load(model)
+        system = load_model(model)
         if inertia is not None:
             raise BadInput("--inertia: the model file already states the inertia; give one of the two")
     added = names(effects)
@@ -74,7 +74,7 @@ def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, *, silent
         heading = f"{found.records[0].summary()}\n{result['verdict_text']}"
         write_text(
             folder / "model.toml",
-            dump(found.system, translational=found.translational, per_inertia=found.per_inertia, heading=heading),
+            dump_model(found.system, translational=found.translational, per_inertia=found.per_inertia, heading=heading),
         )
         fit_report(found, result, folder / "report.html")
     if machine:

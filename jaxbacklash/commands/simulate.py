@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import BadInput, NoAnswer
 from ..excitation import AbstractExcitation, Chirp, Harmonic, Multisine, Rest, SteppedSine
-from ..model_file import load
+from ..model_file import load_model
 from ..records import read_record, write_record
 from ..records.writer import WRITERS
 from ..simulation import as_record, measured_base
@@ -49,7 +49,7 @@ def run(
         raise BadInput(f"--noise {noise:g}: wanted a standard deviation, zero or more")
     if out.suffix.lower() not in WRITERS:
         raise BadInput(f"--out {out}: found the suffix {out.suffix!r}, wanted one of {', '.join(WRITERS)}")
-    system = load(model)
+    system = load_model(model)
     rng = np.random.default_rng(seed)
     drive, t0, duration = parse_excitation(excitation, as_force, duration, rng)
     path = run_system(system, drive, duration=duration, rate=rate, y0=y0, dy0=dy0, t0=t0)
@@ -113,8 +113,7 @@ def _build(kind: str, p: dict[str, float], as_force: bool, duration: float, rng:
     if kind == "harmonic":
         return Harmonic(_f(level), _f(2 * np.pi * p["frequency"]), _f(p["phase"]), as_force=as_force)
     if kind == "chirp":
-        values = (level, p["f0"], p["f1"], duration, p["corner"])
-        return Chirp(*(_f(v) for v in values), as_force=as_force)
+        return Chirp(_f(level), _f(p["f0"]), _f(p["f1"]), _f(duration), _f(p["corner"]), as_force=as_force)
     if not 0.0 < p["low"] < p["high"]:
         raise BadInput(f"--excitation {kind}: low is {p['low']:g} and high {p['high']:g}, wanted 0 < low < high [Hz]")
     if kind == "multisine":

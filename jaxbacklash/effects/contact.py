@@ -36,18 +36,18 @@ class Contact(eqx.Module):
     ``backlash`` is the TOTAL play. ``width`` smooths both corners where the law is evaluated without a known region.
     """
 
-    backlash: Scalar = param(unit="rad", lower=0.0, label="backlash (total play)")
-    stiffness: Scalar = param(unit="N m/rad", lower=0.0, label="contact stiffness")
+    backlash: Scalar = param(unit="rad", lower=0.0, required=True, label="backlash (total play)")
+    stiffness: Scalar = param(unit="N m/rad", lower=0.0, required=True, label="contact stiffness")
     width: Scalar = param(unit="rad", default=0.0, lower=0.0, fixed=True, label="corner smoothing half-width")
 
 
 class Spring(eqx.Module):
     """A spring without play: :math:`T = -k z`."""
 
-    stiffness: Scalar = param(unit="N m/rad", lower=0.0, label="stiffness")
+    stiffness: Scalar = param(unit="N m/rad", lower=0.0, required=True, label="stiffness")
 
 
 class Damper(eqx.Module):
     r"""Viscous damping that always acts, in the play and in contact: :math:`T = -c\,\dot z`."""
 
-    damping: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, label="viscous damping")
+    damping: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, required=True, label="viscous damping")

@@ -35,7 +35,7 @@ def solve(blocks: Blocks, damping: Array) -> ArrowSolution:
     blocks : normal equations by blocks (`Blocks`)
     damping : Levenberg-Marquardt :math:`\lambda \ge 0`
     """
-    count, size = blocks.slope.shape
+    size = blocks.slope.shape[1]
     q = blocks.corner.shape[0]
     eye = jnp.eye(size)
     diagonal = blocks.diagonal * (1.0 + damping * eye)

@@ -1,9 +1,9 @@
 r"""A start for the fit: weak-form regression of the equation of motion on the raw samples.
 
 The equation is multiplied by a smooth bump :math:`\varphi` of half-width a and integrated by parts, so that derivatives
-fall on the bump: :math:`\int \varphi'' y = \int \varphi\,(F - k\,\delta_b(z))/J + (c/J) \int \varphi' z`. For a given play the rest is
-linear; the play itself comes from a grid and a local refinement. Noise near the corner biases the result a little,
-which the fit by simulation removes.
+fall on the bump: :math:`\int \varphi'' y = \int \varphi\,(F - k\,\delta_b(z))/J + (c/J) \int \varphi' z`. For a given
+play the rest is linear; the play itself comes from a grid and a local refinement. Noise near the corner biases the result
+a little, which the fit by simulation removes.
 """
 
 from __future__ import annotations
@@ -111,7 +111,11 @@ def _strength(effect: AbstractEffect) -> str | None:
 
 
 def _unit(effect: AbstractEffect, name: str) -> AbstractEffect:
-    return eqx.tree_at(lambda e: getattr(e, name), effect, np.asarray(1.0))
+    return _with(effect, name, 1.0)
+
+
+def _with(effect: AbstractEffect, name: str, value: float) -> AbstractEffect:
+    return eqx.tree_at(lambda e: getattr(e, name), effect, np.asarray(value))
 
 
 def _started(effect: AbstractEffect, strengths: list[tuple[AbstractEffect, str]], rest: Any) -> AbstractEffect:
@@ -119,7 +123,7 @@ def _started(effect: AbstractEffect, strengths: list[tuple[AbstractEffect, str]]
         if known is effect:
             spec = next(f.metadata["spec"] for f in fields(effect) if f.name == name)
             value = float(np.clip(next(rest), spec.lower, spec.upper))
-            return eqx.tree_at(lambda e: getattr(e, name), effect, np.asarray(value))
+            return _with(effect, name, value)
     return effect
 
 

@@ -64,10 +64,8 @@ class Contacts:
 
 def contacts(record: Record, low: float, high: float) -> Contacts:
     """Share of samples beyond each edge of the play, by the measured z (or y at a base at rest)."""
-    if "z" in record.channels:
-        z = record.channels["z"]
-    else:
-        z = record.channels["y"] - record.channels.get("x", 0.0)
+    moved = record.channels
+    z = moved["z"] if "z" in moved else moved["y"] - moved.get("x", 0.0)
     return Contacts(float(np.mean(z > high)), float(np.mean(z < low)), float(np.max(np.abs(z))))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -16,8 +17,8 @@ from ..parameters import values, with_values
 from ..precision import require_double_precision
 from ..records import Record
 from ..system import System
-from .estimates import Estimate, judge
 from .equation_error import Start
+from .estimates import Estimate, judge
 from .levenberg import ArrowLevenbergMarquardt, minimise
 from .profile import with_profiles
 from .score import Score, score
@@ -162,7 +163,7 @@ def fit(
     return Fit(
         fitted, names, estimates, scored, held, chosen, layout.noise, layout.input_noise, covariance,
         found.agreeing, found.tried, found.tied, found.cost, found.steps, start, model, per_inertia, translational,
-        {name: at - before for (_, before), (name, at) in zip(marks, marks[1:])}, problem, unknowns,
+        {name: at - before for (_, before), (name, at) in pairwise(marks)}, problem, unknowns,
     )  # fmt: skip
 
 

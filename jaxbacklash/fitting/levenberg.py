@@ -49,8 +49,9 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         blocks = eqx.tree_at(lambda b: b.cost, blocks, jnp.asarray(jnp.inf))
         q = y.theta.shape[0]
         return ArrowState(
-            blocks, predicted, jnp.asarray(self.damping), jnp.asarray(jnp.inf), jnp.zeros((q, q)), jnp.asarray(0), jnp.asarray(False)
-        )
+            blocks, predicted, jnp.asarray(self.damping), jnp.asarray(jnp.inf), jnp.zeros((q, q)), jnp.asarray(0),
+            jnp.asarray(False),
+        )  # fmt: skip
 
     def step(
         self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any

@@ -27,10 +27,11 @@ def line(estimate: Estimate) -> str:
     if estimate.value is None:
         return f"{name} {estimate.verdict}: {estimate.why}"
     value = number(estimate.value, estimate.stderr)
+    unit = "" if estimate.unit == "1" else estimate.unit
     if estimate.stderr is None:
-        return f"{name} {value} {estimate.unit}"
+        return f"{name} {value} {unit}"
     share = f"{100 * estimate.stderr / abs(estimate.value):.2g} %" if estimate.value else ""
-    text = f"{name} {value} +- {estimate.stderr:.2g} {estimate.unit} ({share})"
+    text = f"{name} {value} +- {estimate.stderr:.2g} {unit}" + (f" ({share})" if share else "")
     if estimate.unit == "rad" and abs(estimate.value) < 1.0:
         text += f" = {np.degrees(estimate.value):.4g} deg"
     return text

@@ -22,8 +22,8 @@ class Score(eqx.Module):
     """The misfit of one record in units of the noise.
 
     Attributes: ``rms`` over all windows; ``median`` window; ``window_rms`` (K,) per score window, NaN where too short;
-    ``window_times`` (K,) their start times [s]; ``t`` (N,), ``measured`` and ``predicted`` (N,) the observed channel, ``residual`` (N,)
-    their difference over the noise.
+    ``window_times`` (K,) their start times [s]; ``t`` (N,), ``measured`` and ``predicted`` (N,) the observed channel,
+    ``residual`` (N,) their difference over the noise.
     """
 
     rms: float

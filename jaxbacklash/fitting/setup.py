@@ -49,12 +49,12 @@ def base_system(
     known = inertia
     if inertia is None and record.kind != "force":
         known = 1.0
-    flags = {"play": model == "joint", "spring": model != "free"}
-    start = estimate(record, inertia=known, **flags)
+    play, spring = model == "joint", model != "free"
+    start = estimate(record, inertia=known, play=play, spring=spring)
     system = _sharpen(add_effects(_system(start, record, model), effects), record)
     if system.effects:
         # Once more with the effects in the regression: a load left out bends the estimate of the joint.
-        start = estimate(record, inertia=known, effects=list(system.effects.values()), **flags)
+        start = estimate(record, inertia=known, play=play, spring=spring, effects=list(system.effects.values()))
         system = _system(start, record, model).with_effects(*start.effects)
     free = () if known is not None else ("inertia",)
     return system, free + free_names(system), start

@@ -109,10 +109,7 @@ def predict(problem: Problem, theta: Array, start: Array, local: Array, t0: Arra
     samples = jax.tree.map(lambda u: u[: -1 : w.every], at)
     times = t0 + w.panel * w.every * jnp.arange(w.samples)
     motion = jax.vmap(system.output)(times, states, samples)
-    if w.intervals:
-        measured = w.basis[0, : -1 : w.every] @ local
-    else:
-        measured = jnp.zeros((0,))
+    measured = w.basis[0, : -1 : w.every] @ local if w.intervals else jnp.zeros((0,))
     return Prediction(motion, measured, jnp.stack(end))
 
 

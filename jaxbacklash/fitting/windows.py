@@ -2,8 +2,9 @@
 
 Window w covers samples w M ... (w+1) M - 1 and ends on the first sample of the next. All windows share one basis for the
 measured input (base motion, or a force that is smooth): a quintic spline whose knots divide the window, so that window w
-needs its own m coefficients and the first five of window w + 1. Records are laid one behind the other with an empty window after each, which holds the trailing
-coefficients; the number of windows is rounded up to a bucket, so that another record length does not compile anew.
+needs its own m coefficients and the first five of window w + 1. Records are laid one behind the other with an empty window
+after each, which holds the trailing coefficients; the number of windows is rounded up to a bucket, so that another record
+length does not compile anew.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ class Windows(eqx.Module):
     rough force that is taken as exact, straight between its samples).
 
     ``t0`` (W,) start times [s]; ``measured`` (W, M); ``weight`` (W, M), 1/noise or 0 where there is no sample;
-    ``tie`` (W,), 1 where the window runs on into the next; ``input`` (W, M) measured input, ``input_weight`` (W, M), 1/its noise or 0;
+    ``tie`` (W,), 1 where the window runs on into the next; ``input`` (W, M) measured input and ``input_weight`` (W, M);
     ``force`` (W, P+1) exact force at panel edges; ``coefficients`` (W, m) start of the spline; ``basis`` (6, P+1, m+5)
     the splines and their derivatives at panel edges; ``starts`` (2, W) position and speed of the link from the smoothed data;
     ``drop`` (2,) how sharply ends tie to starts [1/rad, s/rad]; ``by_force`` True when the spline is of the force.
@@ -100,7 +101,9 @@ def cut(records: Sequence[Record], window: float, *, longest_panel: float = LONG
     lead = records[0]
     for other in records[1:]:
         if other.kind != lead.kind or other.observed_name != lead.observed_name:
-            raise BadInput(f"{other.path}: has channels of a {other.kind} record, {lead.path} of a {lead.kind} record; fit them apart")
+            raise BadInput(
+                f"{other.path}: has channels of a {other.kind} record, {lead.path} of a {lead.kind} record; fit them apart"
+            )
         if abs(other.dt - lead.dt) > 1e-6 * lead.dt:
             raise BadInput(
                 f"{other.path}: sampled at {other.rate_hz:g} Hz, {lead.path} at {lead.rate_hz:g} Hz; "
@@ -212,10 +215,8 @@ def _force_edges(force: np.ndarray, rows: int, length: int, every: int) -> np.nd
 
 
 def _starts(record: Record, motion: np.ndarray, observed: np.ndarray, length: int, t0: np.ndarray) -> np.ndarray:
-    if record.observed_name == "T":
-        link = motion
-    else:
-        link = observed + motion if record.observed_name == "z" else observed
+    # What the torque does to the link is not seen: it is taken to follow its base.
+    link = {"T": motion, "z": observed + motion, "y": observed}[record.observed_name]
     window = length * record.dt
     smooth = fit_spline(record.t, link, record.t[0], window / choose_intervals(record.t, link, window))
     inside = np.clip(t0, record.t[0], record.t[-1])

@@ -100,11 +100,11 @@ def pictures(
         panels.append(
             Panel(
                 "Restoring force",
-                "What the joint returns when inertia, damping and loads are taken off the measured motion, beside the model's law.",
+                "What the joint returns when inertia, damping and loads are taken off the measured motion, beside the model.",
                 to_svg(
                     restoring_force(
-                        motion.z[INSIDE], motion.restoring_torque(system)[INSIDE], model_z=at, model_torque=_law(system, at), edges=edges,
-                        unit=torque_unit, length_unit=unit,
+                        motion.z[INSIDE], motion.restoring_torque(system)[INSIDE], model_z=at, model_torque=_law(system, at),
+                        edges=edges, unit=torque_unit, length_unit=unit,
                     )
                 ),
                 "force",

@@ -1,0 +1,8 @@
+"""diffrax solvers of our own: many located panels in one step."""
+
+from .panels import Cubic as Cubic
+from .panels import advance as advance
+from .panels import advance_smooth as advance_smooth
+from .substeps import DrivenTerm as DrivenTerm
+from .substeps import PanelRK4 as PanelRK4
+from .substeps import run_panels as run_panels
