@@ -38,6 +38,7 @@ Json = Annotated[bool, typer.Option("--json", help="Print the machine-readable r
 Seed = Annotated[int, typer.Option("--seed", help="Seed of everything random")]
 Window = Annotated[float, typer.Option("--window", help="Length of the windows whose prediction error is quoted [s]")]
 Translation = Annotated[bool, typer.Option("--translation", help="The record is of a translating mass: m, kg, N")]
+Laws = Annotated[Path | None, typer.Option("--laws", help="A Python file with effect classes of your own")]
 Heldout = Annotated[Path | None, typer.Option("--heldout", help="A record to predict with the fitted parameters frozen")]
 
 
@@ -49,6 +50,7 @@ def fit(
     inertia: Inertia = None,
     model: Annotated[str, typer.Option("--model", help="joint, linear, free, or a model file FILE.toml to start from")] = "joint",
     effects: Annotated[str | None, typer.Option("--effects", help="Effects to add: gravity,coulomb_joint")] = None,
+    laws: Laws = None,
     heldout: Heldout = None,
     out: Out = None,
     json: Json = False,
@@ -65,7 +67,9 @@ def fit(
 ) -> None:
     """Fit backlash, stiffness and damping (and effects you name) to one or more records."""
     from .commands import fit as command
+    from .commands.common import load_laws
 
+    load_laws(laws)
     command.run(
         records, inertia=inertia, model=model, effects=effects, heldout=heldout, out=out, as_json=json, columns=columns,
         unit=unit, scale=scale, resample=resample_rate or resample, window=window, starts=starts, profile=profile,
@@ -77,6 +81,7 @@ def fit(
 def compare(
     model: Annotated[Path, typer.Argument(help="A model file (TOML), as written by fit")],
     record: Annotated[Path, typer.Argument(help="A record")],
+    laws: Laws = None,
     out: Out = None,
     json: Json = False,
     columns: Columns = None,
@@ -90,7 +95,9 @@ def compare(
 ) -> None:
     """Compare a model with a record it may never have seen: where does it fail, and by how many noises?"""
     from .commands import compare as command
+    from .commands.common import load_laws
 
+    load_laws(laws)
     command.run(
         model, record, out=out, as_json=json, columns=columns, unit=unit, scale=scale, resample=resample_rate or resample,
         window=window, translational=translation,
@@ -112,6 +119,7 @@ def simulate(
             "or in N m with --force",
         ),
     ] = "chirp:amplitude=0.07,f0=0,f1=12",
+    laws: Laws = None,
     force: Annotated[bool, typer.Option("--force", help="The excitation is a force or torque on the link")] = False,
     duration: Annotated[float, typer.Option("--duration", help="Length [s]")] = 30.0,
     rate: Annotated[float, typer.Option("--rate", help="Samples per second [Hz]")] = 500.0,
@@ -123,7 +131,9 @@ def simulate(
 ) -> None:
     """Simulate a model and write what a measurement of it would look like."""
     from .commands import simulate as command
+    from .commands.common import load_laws
 
+    load_laws(laws)
     command.run(
         model, out=out, excitation=excitation, as_force=force, duration=duration, rate=rate, noise=noise, y0=y0, dy0=dy0,
         as_json=json, seed=seed,

@@ -184,6 +184,39 @@ def test_simulate_writes_a_record_that_fits(call, joint, tmp_path):
     assert "to its noise" in out
 
 
+OWN_LAW = '''
+import jax.numpy as jnp
+from jaxbacklash import AbstractEffect, param
+
+
+class SpeedSquared(AbstractEffect):
+    """A torque against the square of the relative speed."""
+
+    strength: float = param(unit="N m s^2/rad^2", null=0.0, lower=0.0, scale=1.0)
+
+    def torque(self, now):
+        return -self.strength * now.dz * jnp.abs(now.dz)
+'''
+
+
+def test_an_effect_of_ones_own(call, joint, tmp_path):
+    """Fifteen lines: fitted, named, reported with its unit, written to the model file and read back."""
+    (tmp_path / "own.py").write_text(OWN_LAW)
+    words = ["fit", joint / "one.csv", "--inertia", "3", "--laws", tmp_path / "own.py", "--starts", "1", "--out", tmp_path / "o"]
+    code, out, err = call(*words, "--effects", "gravity,speed_squared", "--json")
+    assert code == 0, err
+    found = json.loads(out)["stages"][0]["parameters"]["speed_squared.strength"]
+    assert found["unit"] == "N m s^2/rad^2"
+    assert abs(found["value"]) < 5 * found["stderr"]
+    code, out, _ = call("compare", tmp_path / "o" / "model.toml", joint / "two.csv", "--laws", tmp_path / "own.py", "--json")
+    assert code == 0
+    assert json.loads(out)["effects"] == ["gravity", "speed_squared"]
+    (tmp_path / "none.py").write_text("x = 1")
+    code, _, err = call("fit", joint / "one.csv", "--laws", tmp_path / "none.py")
+    assert code == 2
+    assert "defines no effect" in sentence(err)
+
+
 def test_help_has_an_example(call):
     for command in ("fit", "compare", "simulate", "demo"):
         code, out, _ = call(command, "--help")

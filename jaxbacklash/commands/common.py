@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import json
 import sys
 import time
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import BadInput
+from ..mechanics import AbstractEffect
 from ..records import Record, parse_columns, parse_scales, parse_units, read_record
 
 
@@ -25,6 +27,31 @@ def read(
         scales=parse_scales(scale) if scale else None,
         resample=resample or None,
     )
+
+
+def load_laws(path: Path | None) -> None:
+    """Run a file of the user's own effect classes; from then on the catalogue knows them.
+
+    Raises
+    ------
+    BadInput
+        The file is missing, fails, or defines no effect.
+    """
+    if path is None:
+        return
+    try:
+        spec = importlib.util.spec_from_file_location(path.stem, path)
+        if spec is None or spec.loader is None or not path.is_file():
+            raise BadInput(f"--laws {path}: wanted a Python file with effect classes")
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+    except BadInput:
+        raise
+    except Exception as error:
+        raise BadInput(f"--laws {path}: running it failed with {type(error).__name__}: {error}") from None
+    own = (cls for cls in vars(module).values() if isinstance(cls, type) and cls.__module__ == module.__name__)
+    if not any(issubclass(cls, AbstractEffect) for cls in own):
+        raise BadInput(f"--laws {path}: defines no effect, wanted a subclass of jaxbacklash.AbstractEffect")
 
 
 def names(text: str | None) -> list[str]:
