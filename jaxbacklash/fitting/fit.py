@@ -32,6 +32,8 @@ SCORE_WINDOW = 0.2
 """Length of the windows whose prediction error is quoted [s]."""
 ADEQUATE = 1.25
 """Windows are tied into one trajectory only where the untied misfit is below this many noises: else the model is wrong."""
+TIES = (1.0, 100.0)
+"""How sharply windows are tied, in turn: a loose tie finds the trajectory, a tight one makes it one and loses nothing."""
 
 
 def silent(stage: str, share: float) -> None:
@@ -228,16 +230,17 @@ def search(
 
     tied = bool(np.sqrt(2.0 * cost / _freedom(best.value, windows)) < ADEQUATE)
     steps = int(best.stats["state"].steps)
-    if tied:
+    for tightness in TIES if tied else ():
         progress("tying the windows into one trajectory", 0.7)
-        joined = eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(1.0))
+        joined = eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(tightness))
         solution = minimise(joined, best.value, solver)
         after = float(solution.stats["state"].blocks.cost)
+        steps += int(solution.stats["state"].steps)
         # Tied windows may disagree where a chaotic record and a slightly wrong model part ways; then they stay apart.
-        tied = bool(np.sqrt(2.0 * after / _freedom(solution.value, windows)) < ADEQUATE)
-        if tied:
-            best, problem, cost = solution, joined, after
-            steps += int(solution.stats["state"].steps)
+        if not np.sqrt(2.0 * after / _freedom(solution.value, windows)) < ADEQUATE:
+            tied = tightness != TIES[0]
+            break
+        best, problem, cost = solution, joined, after
     scale = np.asarray(jnp.sum(problem.directions, axis=0))
     covariance = _inverse(np.asarray(best.stats["schur"])) * np.outer(scale, scale)
     return Found(problem, best.value, covariance, cost, agreeing, len(tried), tied, steps)
