@@ -16,12 +16,7 @@ from tests.independent.motions import Motion, Multisine
 from tests.independent.rigs import Rig
 
 FAST = Case("base", seconds=6.0)
-SLOW = [
-    Case("base"),
-    Case("base", 3e-4),
-    Case("straight force", seconds=10.0),
-    Case("straight force", seconds=10.0, inertia_given=False),
-]
+SLOW = [Case("base"), Case("base", 3e-4), Case("force"), Case("force", inertia_given=False)]
 FALSE_ALARM = 1e-3
 PUSH = Multisine(np.array([60.0, 40.0]), np.array([2.1, 7.3]), np.array([0.3, 1.2]), ramp=0.1)  # N m
 
@@ -104,17 +99,26 @@ def test_answers_scatter_as_the_covariance_says(few):
     assert few.shapes == 1
 
 
-def test_reported_covariance_is_the_bound():
-    fitted = fit(FAST, 0)
-    # With the noise levels the fit found, and x in the fit's own space: what is left is the algebra and the ties.
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(FAST, id="base"),
+        pytest.param(Case("force", seconds=6.0), id="force", marks=pytest.mark.slow),
+        pytest.param(Case("force", seconds=6.0, inertia_given=False), id="force, inertia fitted", marks=pytest.mark.slow),
+    ],
+)
+def test_reported_covariance_is_the_bound(case):
+    fitted = fit(case, 0)
+    assert fitted.free == case.names
+    # With the noise the fit found, and x in the fit's own space: what is left is the algebra and the ties.
     noise = fitted.input_noise[0], fitted.noise[0]
-    exact = bound(FAST, spacing=knot_spacing(fitted), noise=noise).covariance
+    exact = bound(case, spacing=knot_spacing(fitted), noise=noise).covariance
     scale = np.sqrt(np.diag(exact))
-    np.testing.assert_allclose(np.sqrt(np.diag(fitted.covariance)), scale, rtol=0.03)
-    np.testing.assert_allclose(fitted.covariance / np.outer(scale, scale), exact / np.outer(scale, scale), atol=0.05)
+    np.testing.assert_allclose(np.sqrt(np.diag(fitted.covariance)), scale, rtol=0.04)
+    np.testing.assert_allclose(fitted.covariance / np.outer(scale, scale), exact / np.outer(scale, scale), atol=0.08)
     # With the true noise and x in the smallest space that holds it: nothing much is given away.
-    least = np.array([bound(FAST).stderr[name] for name in FAST.names])
-    np.testing.assert_allclose(np.sqrt(np.diag(fitted.covariance)), least, rtol=0.08)
+    least = np.array([bound(case).stderr[name] for name in case.names])
+    np.testing.assert_allclose(np.sqrt(np.diag(fitted.covariance)), least, rtol=0.1)
 
 
 @pytest.mark.slow

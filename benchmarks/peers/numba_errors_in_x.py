@@ -1,24 +1,20 @@
 """The like-for-like peer of our fit: scipy's `least_squares` and numba on the whole errors-in-variables problem.
 
-Unknown are the total play b [rad], k [N m/rad], c [N m s/rad]; every window's start y [rad], y' [rad/s]; and the coefficients
-of the quintic spline that stands for the base motion x, m to a window. Residuals, all in units of the noise: measured z
-and measured x, and in a second stage the end of each window minus the start of the next (`TIES`). A row of weight 1e-3
-a coefficient, towards the least-squares spline, holds the few coefficients that meet no sample. Row for row this is the
-problem that `jaxbacklash.fit` solves; `numba_shooting` solves a smaller one, with x taken as exact and no ties.
+Unknown are the total play b [rad], k [N m/rad], c [N m s/rad]; every window's start y [rad], y' [rad/s]; and the
+coefficients of the quintic spline that stands for the base motion x, m to a window. Residuals in units of the noise:
+measured z and measured x, and in a second stage the end of each window minus the start of the next. A row of weight
+1e-3 a coefficient, towards the least-squares spline, holds the few coefficients that meet no sample. Row for row
+this is what `jaxbacklash.fit` solves; `numba_shooting` solves less, with x taken as exact and no ties.
 
-RK4 in steps of at most 1 ms does not do: its error where the link meets an edge of the play is up to 0.7 of the noise and
-25 of the ties. So each panel of at most 1 ms is two RK4 steps that meet where the link does. Windows are the innermost
-loop, so that the compiler makes vector instructions of them. One core, no fastmath.
+Plain RK4 in steps of 1 ms does not do: where the link meets an edge of the play its error is up to 0.7 of the noise and
+25 of the ties. So each panel is two RK4 steps that meet where the link does. Windows are the innermost loop, so that
+the compiler makes vector instructions of them. One core, no fastmath. LSMR does the linear algebra (a dense
+factorisation is out of the question) and needs scaled unknowns. `jacobian` says how much is left to scipy:
 
-`fit(..., jacobian=...)`, in the order of what is left to scipy; the linear algebra is LSMR's in all three, since a dense
-factorisation is out of the question at this size:
-
-* "grouped": scipy's own grouped differences, by `jac_sparsity`;
-* "explicit": a sparse matrix, filled by numba from forward differences that perturb all windows at once;
-* "operator": the same matrix behind a `LinearOperator` that whitens the unknowns by the arrow-shaped Cholesky factor of
-  the normal equations, at the start, after three steps and before the ties, so that LSMR needs few steps.
-
-The first two are whitened window by window; left as they are, LSMR needs ten times as many steps still.
+* "grouped": the differences, by `jac_sparsity`; unknowns whitened window by window;
+* "explicit": numba fills a sparse matrix with forward differences of all windows at once; whitened likewise;
+* "operator": the same, whitened by the arrow-shaped Cholesky factor of the normal equations, made three times in a
+  fit: a direct solver of our kind as LSMR's preconditioner.
 """
 
 from __future__ import annotations
@@ -32,12 +28,12 @@ from scipy.linalg import cholesky_banded
 from scipy.linalg.lapack import dtbtrs
 from scipy.optimize import least_squares
 from scipy.sparse import csr_matrix, diags
-from scipy.sparse.linalg import LinearOperator, spsolve
+from scipy.sparse.linalg import LinearOperator, aslinearoperator, spsolve
 
 NAMES = ("backlash", "stiffness", "damping")
 TIES = 50.0 * np.array([1.0, 0.02])  # a tie against one sample's noise: for y [1], for y' [s]
 WHISPER = 1e-3
-FAR = 1e4  # the unit of a whitened unknown, in standard errors: scipy steps 1.5e-8 of it in its differences
+FAR = 1e4  # standard errors: the first trust region; and the unit of "grouped", since scipy's differences step 1.5e-8
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -52,14 +48,17 @@ def crossing(gap, speed, bend, h):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
+def cubic(x0, x1, x2, x3, s):
+    return x0 + s * (x1 + s * (x2 + s * x3)), x1 + s * (2 * x2 + 3 * s * x3)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
 def rk4(y, v, half, k, c, z, x0, x1, x2, x3, s, h):
     """One step from time s of a panel with x = x0 + x1 s + ..., in the region that z lies in."""
     side = 1.0 if z > half else (-1.0 if z < -half else 0.0)
     k = k if side != 0.0 else 0.0
     push, m, e = k * side * half, s + h / 2, s + h
-    xa, da = x0 + s * (x1 + s * (x2 + s * x3)), x1 + s * (2 * x2 + 3 * s * x3)
-    xm, dm = x0 + m * (x1 + m * (x2 + m * x3)), x1 + m * (2 * x2 + 3 * m * x3)
-    xe, de = x0 + e * (x1 + e * (x2 + e * x3)), x1 + e * (2 * x2 + 3 * e * x3)
+    (xa, da), (xm, dm), (xe, de) = cubic(x0, x1, x2, x3, s), cubic(x0, x1, x2, x3, m), cubic(x0, x1, x2, x3, e)
     a1 = push - k * (y - xa) - c * (v - da)
     v2 = v + h / 2 * a1
     a2 = push - k * (y + h / 2 * v - xm) - c * (v2 - dm)
@@ -73,18 +72,17 @@ def rk4(y, v, half, k, c, z, x0, x1, x2, x3, s, h):
 @njit(cache=True, error_model="numpy", inline="always")
 def spline(basis, local, first, out):
     for w in range(out.size):
-        out[w] = (
-            basis[0] * local[first, w] + basis[1] * local[first + 1, w] + basis[2] * local[first + 2, w]
-            + basis[3] * local[first + 3, w] + basis[4] * local[first + 4, w] + basis[5] * local[first + 5, w]
-        )  # fmt: skip
+        low = basis[0] * local[first, w] + basis[1] * local[first + 1, w] + basis[2] * local[first + 2, w]
+        high = basis[3] * local[first + 3, w] + basis[4] * local[first + 4, w] + basis[5] * local[first + 5, w]
+        out[w] = low + high
 
 
 @njit(cache=True, error_model="numpy")
 def simulate(theta, starts, local, basis, first, panels, h, inertia, z, base, ends):
-    """z and x (m, w) of w windows of m samples, and y, y' at their ends (2, w).
+    """z and base x (m, w) of w windows of m samples, and y, y' at their ends (2, w).
 
-    theta (3,); starts (2, w); local (m + 5, w) spline coefficients; basis (2, edges, 6) values and slopes of those that are
-    not zero at a panel edge, beginning with number first (edges,); `panels` of length h a sample.
+    theta (3,); starts (2, w); local (m + 5, w) spline coefficients; basis (2, edges, 6) values and slopes of the six
+    splines at a panel edge that are not zero, beginning with number first (edges,); `panels` of length h a sample.
     """
     half, k, c = theta[0] / 2, theta[1] / inertia, theta[2] / inertia
     samples, windows = z.shape
@@ -108,16 +106,17 @@ def simulate(theta, starts, local, basis, first, panels, h, inertia, z, base, en
                 split = split if split < h else h / 2
                 p = split / 2
                 y1, v1 = rk4(y[w], v[w], half, k, c, u + p * (du + p / 2 * ddu), x0, x1, x2, x3, 0.0, split)
-                u = y1 - (x0 + split * (x1 + split * (x2 + split * x3)))
-                du = v1 - (x1 + split * (2 * x2 + 3 * split * x3))
-                p = (h - split) / 2
+                at, dat = cubic(x0, x1, x2, x3, split)
+                u, du, p = y1 - at, v1 - dat, (h - split) / 2
                 y[w], v[w] = rk4(y1, v1, half, k, c, u + p * (du + p / 2 * ddu), x0, x1, x2, x3, split, h - split)
                 x[w], dx[w] = x_end[w], dx_end[w]
     ends[0], ends[1] = y, v
 
 
 @njit(cache=True, error_model="numpy")
-def differences(theta, starts, local, basis, first, panels, h, inertia, z, base, ends, units, weight, sharp, out, out_ends):
+def differences(
+    theta, starts, local, basis, first, panels, h, inertia, z, base, ends, units, weight, sharp, out, out_ends
+):  # fmt: skip
     """Forward differences of all windows at once, weighted: out (m, w, q) of z and out_ends (2, w, q) of the ends.
 
     The q = 3 + 2 + m + 5 columns: parameters in `units` (3,), a window's start, its coefficients and the next five.
@@ -134,32 +133,28 @@ def differences(theta, starts, local, basis, first, panels, h, inertia, z, base,
         else:
             c[i - 5] += 1e-8
         simulate(t, s, c, basis, first, panels, h, inertia, moved[i], base, moved_ends[i])
-    for w in range(windows):
-        for i in range(count):
-            for n in range(2):
-                out_ends[n, w, i] = (moved_ends[i, n, w] - ends[n, w]) * (1e7 if i < 3 else 1e8) * sharp[n]
     for n in range(samples):
         for w in range(windows):
             for i in range(count):
                 out[n, w, i] = (moved[i, n, w] - z[n, w]) * (1e7 if i < 3 else 1e8) * weight[n, w]
+                if n < 2:
+                    out_ends[n, w, i] = (moved_ends[i, n, w] - ends[n, w]) * (1e7 if i < 3 else 1e8) * sharp[n]
 
 
 class Problem:
     """A record cut into windows, x on a spline.
 
-    The unknowns (3 + w (m + 2) + 5,): parameters over their start; by window m coefficients, y and y'; the last five
-    coefficients.
+    Unknowns (3 + w (m + 2) + 5,): parameters over their start; by window m coefficients, y and y'; five coefficients.
 
-    Args: t, x, z (n,) [s, rad, rad]; inertia [kg m^2]; start {name: value}; sigma_z, sigma_x [rad]; intervals, the spline's
-    m a window; window [s]; longest panel [s].
+    Args: t, x, z (n,) [s, rad, rad]; inertia [kg m^2]; start {name: value}; sigma_z, sigma_x [rad]; intervals m of the
+    spline in a window; window [s]; longest panel [s].
     """
 
     def __init__(self, t, x, z, inertia, start, sigma_z, sigma_x, intervals, window=0.1, longest=1e-3):
-        began = time.perf_counter()
         dt, self.inertia, self.m = (t[-1] - t[0]) / (len(t) - 1), inertia, intervals
         self.samples = round(window / dt)
         self.windows = -(-len(t) // self.samples)
-        self.panels, m, w = int(np.ceil(dt / longest - 1e-9)), self.m, self.windows
+        self.panels, m, w = int(np.ceil(dt / longest - 1e-9)), intervals, self.windows
         self.h, self.tied = dt / self.panels, False
         self.scale = np.array([start[name] for name in NAMES], float)
         self.measured, self.base, held = self._cut(z), self._cut(x), self._cut(np.ones(len(t)))
@@ -178,33 +173,30 @@ class Problem:
         link, at = BSpline(knots, spsolve(gram, design.T @ (x + z)), 5), t[0] + np.arange(w) * self.samples * dt
 
         # Where each unknown is, and which unknowns the rows of the Jacobian meet.
-        block = 3 + np.arange(w)[:, None] * (m + 2)
-        self.at_starts = (block + m + np.arange(2)).T
-        self.at_local = np.hstack([block + np.arange(m), block + m + 2 + np.arange(5)]).T
+        block = 3 + np.arange(w) * (m + 2)
+        self.at_starts = block + m + np.arange(2)[:, None]
+        self.at_local = block + np.r_[0:m, m + 2 : m + 7][:, None]
         self.at_coefficients = np.append(self.at_local[:m].T.ravel(), self.at_local[m:, -1])
         self.first_guess = np.ones(3 + w * (m + 2) + 5)
         self.first_guess[self.at_starts] = link(at), link(at, 1)
         self.first_guess[self.at_coefficients] = self.coefficients
-        own = np.vstack([np.tile(np.arange(3)[:, None], w), self.at_starts, self.at_local]).T
+        own = np.vstack([np.full((3, w), [[0], [1], [2]]), self.at_starts, self.at_local]).T
         ties = [np.column_stack([own[:-1], self.at_starts[i, 1:]]) for i in range(2)]
         at_base = self.at_local[self.first[:-1 : self.panels, None] + np.arange(6)].transpose(0, 2, 1)
-        motion = np.broadcast_to(own, (self.samples, *own.shape))
-        columns = motion, at_base, self.at_coefficients, *ties
+        columns = np.broadcast_to(own, (self.samples, *own.shape)), at_base, self.at_coefficients, *ties
         self.columns = np.concatenate([c.ravel() for c in columns]).astype(np.int32)
         values = self.basis[0, :-1 : self.panels, None, :] * self.base_weight[:, :, None]
         self.constant = np.append(values, np.full(self.at_coefficients.size, self.whisper))
         self.cached = None
-        self.seconds_spline = time.perf_counter() - began
 
     def _cut(self, values):
-        padded = np.zeros(self.windows * self.samples)
-        padded[: len(values)] = values
+        padded = np.pad(values, (0, self.windows * self.samples - len(values)))
         return np.ascontiguousarray(padded.reshape(self.windows, -1).T)
 
     def _arguments(self, p):
-        z, base, ends = np.empty_like(self.weight), np.empty_like(self.weight), np.empty((2, self.windows))
-        starts, local = p[self.at_starts], p[self.at_local]
-        return p[:3] * self.scale, starts, local, self.basis, self.first, self.panels, self.h, self.inertia, z, base, ends
+        out = np.empty_like(self.weight), np.empty_like(self.weight), np.empty((2, self.windows))
+        unknown = p[:3] * self.scale, p[self.at_starts], p[self.at_local]
+        return *unknown, self.basis, self.first, self.panels, self.h, self.inertia, *out
 
     def residual(self, p):
         """All residuals in units of the noise, at the unknowns p: motion, base motion, whisper, ties."""
@@ -236,97 +228,80 @@ class Problem:
         return matrix
 
 
-class Windowed:
-    """Unknowns whitened window by window: p = matrix u, by the factors of the blocks of J^T J."""
-
-    def __init__(self, problem, normal):
-        m, w, size = problem.m, problem.windows, normal.shape[0]
-        where = 3 + np.arange(w)[:, None] * (m + 2) + np.arange(m + 2)
-        rows, columns = np.broadcast_arrays(where[:, :, None], where[:, None, :])
-        blocks = np.asarray(normal[rows.ravel(), columns.ravel()]).reshape(rows.shape)
-        inverse = np.linalg.inv(np.linalg.cholesky(blocks)).transpose(0, 2, 1)
-        rest = np.r_[0:3, size - 5 : size]
-        upper = np.triu_indices(m + 2)
-        data = np.append(inverse[:, *upper], normal.diagonal()[rest] ** -0.5)
-        where = np.append(rows[:, *upper], rest), np.append(columns[:, *upper], rest)
-        self.matrix = csr_matrix((data, where), normal.shape)
-
-    def apply(self, u):
-        return self.matrix @ u
+def by_window(problem, normal):
+    """Whitening, p = matrix u, by the Cholesky factors of the windows' own blocks of J^T J; a sparse matrix."""
+    m, w, size = problem.m, problem.windows, normal.shape[0]
+    where = 3 + np.arange(w)[:, None] * (m + 2) + np.arange(m + 2)
+    rows, columns = np.broadcast_arrays(where[:, :, None], where[:, None, :])
+    blocks = np.asarray(normal[rows.ravel(), columns.ravel()]).reshape(rows.shape)
+    inverse = np.linalg.inv(np.linalg.cholesky(blocks)).transpose(0, 2, 1)
+    upper, rest = np.triu_indices(m + 2), np.r_[0:3, size - 5 : size]
+    data = np.append(inverse[:, *upper], normal.diagonal()[rest] ** -0.5)
+    return csr_matrix((data, (np.append(rows[:, *upper], rest), np.append(columns[:, *upper], rest))), normal.shape)
 
 
-class Arrow:
-    """Unknowns whitened by the whole factor of J^T J: banded for the windows, a border for the parameters."""
+def by_arrow(problem, normal):
+    """Whitening by the whole factor of J^T J: banded for the windows, with a border for the parameters."""
+    inner, width = normal[3:, 3:], 2 * problem.m + 4
+    bands = np.zeros((width, inner.shape[0]))
+    for i in range(width):
+        bands[i, : inner.shape[0] - i] = inner.diagonal(-i)
+    factor = cholesky_banded(bands, lower=True)
 
-    def __init__(self, problem, normal):
-        inner, width = normal[3:, 3:], 2 * problem.m + 4
-        bands = np.zeros((width, inner.shape[0]))
-        for i in range(width):
-            bands[i, : inner.shape[0] - i] = inner.diagonal(-i)
-        self.factor = cholesky_banded(bands, lower=True)
-        self.border = self._solve(normal[3:, :3].toarray())
-        self.corner = np.linalg.inv(np.linalg.cholesky(normal[:3, :3].toarray() - self.border.T @ self.border))
+    border = dtbtrs(factor, normal[3:, :3].toarray(), uplo="L")[0]
+    corner = np.linalg.inv(np.linalg.cholesky(normal[:3, :3].toarray() - border.T @ border))
 
-    def _solve(self, right, transposed="N"):
-        return dtbtrs(self.factor, right, uplo="L", trans=transposed)[0]
+    def forward(u):
+        theta = corner.T @ u[:3]
+        return np.append(theta, dtbtrs(factor, u[3:] - border @ theta, uplo="L", trans="T")[0])
 
-    def apply(self, u):
-        theta = self.corner.T @ u[:3]
-        return np.append(theta, self._solve(u[3:] - self.border @ theta, "T"))
+    def adjoint(g):
+        inside = dtbtrs(factor, g[3:], uplo="L")[0].ravel()
+        return np.append(corner @ (g[:3] - border.T @ inside), inside)
 
-    def adjoint(self, g):
-        inner = self._solve(g[3:]).ravel()
-        return np.append(self.corner @ (g[:3] - self.border.T @ inner), inner)
+    return LinearOperator(normal.shape, matvec=forward, rmatvec=adjoint, dtype=float)
 
 
 def fit(t, x, z, inertia, start, *, sigma_z, sigma_x, intervals, jacobian="operator", ftol=3e-8, **options):
-    """Parameters, cost (half the sum of squares), nfev, seconds (without compiling and the spline), seconds_spline.
+    """Parameters, cost (half the sum of squares), nfev, seconds (without compiling and preparing the spline).
 
     Arguments as `Problem`'s; jacobian: "grouped", "explicit" or "operator".
     """
     problem = Problem(t, x, z, inertia, start, sigma_z, sigma_x, intervals, **options)
     problem.residual(problem.first_guess)
     problem.jacobian(problem.first_guess)  # both compile
+    problem.cached = None
     began, p, evaluations = time.perf_counter(), problem.first_guess, 0
-    rounds = ((False, 3), (False, None), (True, None)) if jacobian == "operator" else ((False, None), (True, None))
-    for problem.tied, most in rounds:
+    whiten, rounds = (by_arrow, (3, None, None)) if jacobian == "operator" else (by_window, (None, None))
+    for i, most in enumerate(rounds, 1):
+        problem.tied = i == len(rounds)
         matrix = problem.jacobian(p)
         normal = (matrix.T @ matrix).tocsr()
         normal = normal + diags(1e-12 * normal.diagonal() + (normal.diagonal() == 0.0)).tocsr()
-        white = (Arrow if jacobian == "operator" else Windowed)(problem, normal)
-        found = _stage(problem, p, white, jacobian, ftol, most)
-        p, evaluations = found.p, evaluations + found.nfev
-    numbers = dict(zip(NAMES, map(float, p[:3] * problem.scale)))
-    seconds = time.perf_counter() - began
+        p, found = _round(problem, p, whiten(problem, normal), jacobian, ftol=ftol, xtol=None, gtol=None, max_nfev=most)
+        evaluations += found.nfev
     return {
-        **numbers, "cost": float(found.cost), "nfev": evaluations, "seconds": seconds,
-        "seconds_spline": problem.seconds_spline,
-    }  # fmt: skip
+        **dict(zip(NAMES, map(float, p[:3] * problem.scale))),
+        **{"cost": float(found.cost), "nfev": evaluations, "seconds": time.perf_counter() - began},
+    }
 
 
-def _stage(problem, p, white, jacobian, ftol, most):
+def _round(problem, p, white, jacobian, **settings):
     # scipy's first trust region is as large as the first guess: at the origin it would be one standard error.
-    begin = np.full(p.size, 1.0 if jacobian == "grouped" else FAR)
-    unit = FAR if jacobian == "grouped" else 1.0
+    unit, far = (FAR, 1.0) if jacobian == "grouped" else (1.0, FAR)
+    begin = np.full(p.size, far)
 
     def place(u):
-        return p + white.apply(unit * (u - begin))
+        return p + white @ (unit * (u - begin))
 
-    def explicit(u):
-        return (problem.jacobian(place(u)) @ white.matrix).tocsr()
-
-    def operator(u):
-        matrix = problem.jacobian(place(u))
-        turned = matrix.T
-        return LinearOperator(
-            matrix.shape, matvec=lambda v: matrix @ white.apply(v), rmatvec=lambda v: white.adjoint(turned @ v), dtype=float
-        )
-
-    settings = {"tr_solver": "lsmr", "tr_options": {"regularize": False}, "ftol": ftol, "xtol": None, "gtol": None, "max_nfev": most}
     if jacobian == "grouped":
-        settings |= {"jac_sparsity": problem.jacobian(p) @ abs(white.matrix) != 0, "x_scale": "jac"}
+        pattern = problem.jacobian(p).copy()
+        pattern.data[:] = 1.0
+        settings |= {"jac_sparsity": pattern @ abs(white) != 0, "x_scale": "jac"}
+    elif jacobian == "explicit":
+        settings["jac"] = lambda u: (problem.jacobian(place(u)) @ white).tocsr()
     else:
-        settings |= {"jac": explicit if jacobian == "explicit" else operator}
+        settings["jac"] = lambda u: aslinearoperator(problem.jacobian(place(u))) @ white
+    settings |= {"tr_solver": "lsmr", "tr_options": {"regularize": False}}
     found = least_squares(lambda u: problem.residual(place(u)), begin, **settings)
-    found.p = place(found.x)
-    return found
+    return place(found.x), found
