@@ -119,7 +119,7 @@ def differences(
 ):  # fmt: skip
     """Forward differences of all windows at once, weighted: out (m, w, q) of z and out_ends (2, w, q) of the ends.
 
-    The q = 3 + 2 + m + 5 columns: parameters in `units` (3,), a window's start, its coefficients and the next five.
+    The q = m + 10 columns: parameters in `units` (3,), a window's start, its coefficients and the next five.
     """
     simulate(theta, starts, local, basis, first, panels, h, inertia, z, base, ends)
     count, (samples, windows) = out.shape[2], z.shape
@@ -151,11 +151,10 @@ class Problem:
     """
 
     def __init__(self, t, x, z, inertia, start, sigma_z, sigma_x, intervals, window=0.1, longest=1e-3):
-        dt, self.inertia, self.m = (t[-1] - t[0]) / (len(t) - 1), inertia, intervals
-        self.samples = round(window / dt)
-        self.windows = -(-len(t) // self.samples)
-        self.panels, m, w = int(np.ceil(dt / longest - 1e-9)), intervals, self.windows
-        self.h, self.tied = dt / self.panels, False
+        dt, self.inertia = (t[-1] - t[0]) / (len(t) - 1), inertia
+        self.samples, self.panels = round(window / dt), int(np.ceil(dt / longest - 1e-9))
+        self.m, self.windows = m, w = intervals, -(-len(t) // self.samples)
+        self.h, self.tied, self.cached = dt / self.panels, False, None
         self.scale = np.array([start[name] for name in NAMES], float)
         self.measured, self.base, held = self._cut(z), self._cut(x), self._cut(np.ones(len(t)))
         self.weight, self.base_weight = held / sigma_z, held / sigma_x
@@ -187,7 +186,6 @@ class Problem:
         self.columns = np.concatenate([c.ravel() for c in columns]).astype(np.int32)
         values = self.basis[0, :-1 : self.panels, None, :] * self.base_weight[:, :, None]
         self.constant = np.append(values, np.full(self.at_coefficients.size, self.whisper))
-        self.cached = None
 
     def _cut(self, values):
         padded = np.pad(values, (0, self.windows * self.samples - len(values)))
@@ -202,11 +200,12 @@ class Problem:
         """All residuals in units of the noise, at the unknowns p: motion, base motion, whisper, ties."""
         arguments = self._arguments(p)
         simulate(*arguments)
-        starts, (z, base, ends) = arguments[1], arguments[-3:]
-        motion, base = (z - self.measured) * self.weight, (base - self.base) * self.base_weight
-        whisper = (p[self.at_coefficients] - self.coefficients) * self.whisper
-        ties = (ends[:, :-1] - starts[:, 1:]) * self.sharp if self.tied else np.empty(0)
-        return np.concatenate([motion.ravel(), base.ravel(), whisper, ties.ravel()])
+        z, base, ends = arguments[-3:]
+        parts = [(z - self.measured) * self.weight, (base - self.base) * self.base_weight]
+        parts.append((p[self.at_coefficients] - self.coefficients) * self.whisper)
+        if self.tied:
+            parts.append((ends[:, :-1] - p[self.at_starts[:, 1:]]) * self.sharp)
+        return np.concatenate([part.ravel() for part in parts])
 
     def jacobian(self, p):
         """Its sparse Jacobian, by forward differences."""
@@ -219,13 +218,11 @@ class Problem:
         data[n * q :] = self.constant
         lengths = [[q, 6, 1], [n, n, held.size]]
         if self.tied:
-            following = np.broadcast_to(-self.sharp[:, :, None], (2, w - 1, 1))
-            data = np.append(data, np.concatenate([ends[:, :-1], following], axis=2))
+            data = np.append(data, np.dstack([ends[:, :-1], np.broadcast_to(-self.sharp, (2, w - 1))]))
             lengths = [[*lengths[0], q + 1], [*lengths[1], 2 * (w - 1)]]
         rows = np.append(0, np.cumsum(np.repeat(*lengths)))
-        matrix = csr_matrix((data, self.columns[: data.size], rows), (rows.size - 1, p.size))
-        self.cached = self.tied, p.copy(), matrix
-        return matrix
+        self.cached = self.tied, p.copy(), csr_matrix((data, self.columns[: data.size], rows), (rows.size - 1, p.size))
+        return self.cached[2]
 
 
 def by_window(problem, normal):
@@ -243,10 +240,8 @@ def by_window(problem, normal):
 def by_arrow(problem, normal):
     """Whitening by the whole factor of J^T J: banded for the windows, with a border for the parameters."""
     inner, width = normal[3:, 3:], 2 * problem.m + 4
-    bands = np.zeros((width, inner.shape[0]))
-    for i in range(width):
-        bands[i, : inner.shape[0] - i] = inner.diagonal(-i)
-    factor = cholesky_banded(bands, lower=True)
+    bands = [np.pad(inner.diagonal(-i), (0, i)) for i in range(width)]
+    factor = cholesky_banded(np.stack(bands), lower=True)
 
     border = dtbtrs(factor, normal[3:, :3].toarray(), uplo="L")[0]
     corner = np.linalg.inv(np.linalg.cholesky(normal[:3, :3].toarray() - border.T @ border))
@@ -280,10 +275,8 @@ def fit(t, x, z, inertia, start, *, sigma_z, sigma_x, intervals, jacobian="opera
         normal = normal + diags(1e-12 * normal.diagonal() + (normal.diagonal() == 0.0)).tocsr()
         p, found = _round(problem, p, whiten(problem, normal), jacobian, ftol=ftol, xtol=None, gtol=None, max_nfev=most)
         evaluations += found.nfev
-    return {
-        **dict(zip(NAMES, map(float, p[:3] * problem.scale))),
-        **{"cost": float(found.cost), "nfev": evaluations, "seconds": time.perf_counter() - began},
-    }
+    answer = {"cost": float(found.cost), "nfev": evaluations, "seconds": time.perf_counter() - began}
+    return dict(zip(NAMES, map(float, p[:3] * problem.scale))) | answer
 
 
 def _round(problem, p, white, jacobian, **settings):
@@ -298,10 +291,9 @@ def _round(problem, p, white, jacobian, **settings):
         pattern = problem.jacobian(p).copy()
         pattern.data[:] = 1.0
         settings |= {"jac_sparsity": pattern @ abs(white) != 0, "x_scale": "jac"}
-    elif jacobian == "explicit":
-        settings["jac"] = lambda u: (problem.jacobian(place(u)) @ white).tocsr()
     else:
-        settings["jac"] = lambda u: aslinearoperator(problem.jacobian(place(u))) @ white
+        form = csr_matrix if jacobian == "explicit" else aslinearoperator
+        settings["jac"] = lambda u: form(problem.jacobian(place(u))) @ white
     settings |= {"tr_solver": "lsmr", "tr_options": {"regularize": False}}
     found = least_squares(lambda u: problem.residual(place(u)), begin, **settings)
     return place(found.x), found
