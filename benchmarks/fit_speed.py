@@ -20,7 +20,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads only wait for one another at these sizes, in scipy's LSMR most
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # its threads only wait for one another, most of all in LSMR
 
 import numpy as np
 
