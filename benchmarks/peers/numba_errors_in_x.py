@@ -3,8 +3,8 @@
 Unknown are the total play b [rad], k [N m/rad], c [N m s/rad]; every window's start y [rad], y' [rad/s]; and the
 coefficients of the quintic spline that stands for the base motion x, m to a window. Residuals in units of the noise:
 measured z and measured x, and in a second stage the end of each window minus the start of the next. A row of weight
-1e-3 a coefficient, towards the least-squares spline, holds the few coefficients that meet no sample. Row for row
-this is what `jaxbacklash.fit` solves; `numba_shooting` solves less, with x taken as exact and no ties.
+1e-3 a coefficient, towards the least-squares spline, holds the few that meet no sample. Row for row this is what
+`jaxbacklash.fit` solves with its looser ties; `numba_shooting` solves less, with x taken as exact and no ties.
 
 Plain RK4 in steps of 1 ms does not do: where the link meets an edge of the play its error is up to 0.7 of the noise and
 25 of the ties. So each panel is two RK4 steps that meet where the link does. Windows are the innermost loop, so that
