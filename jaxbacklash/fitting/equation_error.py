@@ -62,8 +62,10 @@ def estimate(
     weak = _WeakForm(record)
     strengths = [(effect, name) for effect in effects if (name := _strength(effect)) is not None]
 
+    damping_column = weak.damping()
+
     def solve(half_play: float) -> tuple[float, np.ndarray]:
-        columns = [weak.damping()]
+        columns = [damping_column]
         if spring:
             columns.append(weak.integrate(_dead_zone(weak.z, half_play)))
         if inertia is None:

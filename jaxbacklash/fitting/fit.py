@@ -10,6 +10,7 @@ from itertools import pairwise
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
+import optimistix as optx
 
 from ..errors import NoAnswer
 from ..mechanics import AbstractEffect
@@ -32,8 +33,9 @@ SCORE_WINDOW = 0.2
 """Length of the windows whose prediction error is quoted [s]."""
 ADEQUATE = 1.25
 """Windows are tied into one trajectory only where the untied misfit is below this many noises: else the model is wrong."""
-TIES = (1.0, 100.0)
-"""How sharply windows are tied, in turn: a loose tie finds the trajectory, a tight one makes it one and loses nothing."""
+TIES = ((100.0,), (1.0, 100.0), (1.0,))
+"""How sharply windows are tied, in turn, and what is tried next where that fails: sharply at once; a loose tie to find the
+trajectory and a sharp one to make it one; the loose one alone."""
 
 
 def silent(stage: str, share: float) -> None:
@@ -169,6 +171,16 @@ def fit(
     )  # fmt: skip
 
 
+def _tie(problem: Problem, unknowns: Unknowns, ties: Sequence[float]) -> tuple[Problem, optx.Solution, int]:
+    # Free windows end close to the tied ones: a damped step would only fight the ties, which are stiff.
+    solver, steps = ArrowLevenbergMarquardt(damping=1e-9), 0
+    for tightness in ties:
+        problem = eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(tightness))
+        solution = minimise(problem, unknowns, solver)
+        unknowns, steps = solution.value, steps + int(solution.stats["state"].steps)
+    return problem, solution, steps
+
+
 @dataclass(frozen=True)
 class Found:
     """Where a search ended; ``covariance`` (q, q) in the parameters' own units."""
@@ -188,9 +200,9 @@ def prepare(system: System, records: Sequence[Record], window: float) -> tuple[W
     shooting = 0.5 * window if window < 2 * SHOOTING_WINDOW else SHOOTING_WINDOW
     longest = LONGEST_PANEL
     if system.contact is not None:
-        # Forty panels a period of the contact resonance keep the integration error a thousandth of an encoder's noise.
+        # Thirty-two panels a period of the contact resonance keep the integration error a thousandth of an encoder's noise.
         omega = np.sqrt(float(system.contact.stiffness) / float(system.inertia))
-        longest = min(longest, max(2.0 * np.pi / max(omega, 1e-9) / 40.0, records[0].dt / 16.0))
+        longest = min(longest, max(2.0 * np.pi / max(omega, 1e-9) / 32.0, records[0].dt / 16.0))
     windows, layout = cut(records, shooting, longest_panel=longest)
     return windows, layout, max(1, round(window / (layout.length * layout.dt)))
 
@@ -228,19 +240,18 @@ def search(
     excess = max(1.0, 2.0 * cost / rows)
     agreeing = sum(entry[0] - cost < 2.0 * excess for entry in tried)
 
-    tied = bool(np.sqrt(2.0 * cost / _freedom(best.value, windows)) < ADEQUATE)
     steps = int(best.stats["state"].steps)
-    for tightness in TIES if tied else ():
+    tied = False
+    if np.sqrt(2.0 * cost / _freedom(best.value, windows)) < ADEQUATE:
         progress("tying the windows into one trajectory", 0.7)
-        joined = eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(tightness))
-        solution = minimise(joined, best.value, solver)
-        after = float(solution.stats["state"].blocks.cost)
-        steps += int(solution.stats["state"].steps)
-        # Tied windows may disagree where a chaotic record and a slightly wrong model part ways; then they stay apart.
-        if not np.sqrt(2.0 * after / _freedom(solution.value, windows)) < ADEQUATE:
-            tied = tightness != TIES[0]
-            break
-        best, problem, cost = solution, joined, after
+        for ties in TIES:
+            joined, solution, taken = _tie(problem, best.value, ties)
+            steps += taken
+            after = float(solution.stats["state"].blocks.cost)
+            # Tied windows may disagree where a chaotic record and a slightly wrong model part ways; then they stay apart.
+            if np.sqrt(2.0 * after / _freedom(solution.value, windows)) < ADEQUATE:
+                best, problem, cost, tied = solution, joined, after, True
+                break
     scale = np.asarray(jnp.sum(problem.directions, axis=0))
     covariance = _inverse(np.asarray(best.stats["schur"])) * np.outer(scale, scale)
     return Found(problem, best.value, covariance, cost, agreeing, len(tried), tied, steps)

@@ -68,7 +68,7 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         blocks, predicted = linearise(args, trial)
         better = blocks.cost < state.blocks.cost
         pick = lambda new, old: jnp.where(better, new, old)  # noqa: E731
-        damping = jnp.where(better, jnp.maximum(0.2 * state.damping, 1e-12), jnp.minimum(6.0 * state.damping + 1e-9, 1e12))
+        damping = jnp.where(better, jnp.maximum(0.2 * state.damping, 1e-12), jnp.clip(6.0 * state.damping, 1e-5, 1e12))
         damping = jnp.where(state.ready, damping, jnp.asarray(self.damping))
         # What a Gauss-Newton step promised at the old point, damped as it was: the measure of being there.
         promise = -0.5 * (jnp.sum(state.blocks.slope * solution.local) + jnp.sum(state.blocks.slope_theta * solution.theta))

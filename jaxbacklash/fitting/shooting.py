@@ -20,11 +20,10 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
-from ..excitation import Panelled
 from ..parameters import unravel
 from ..signals import DEGREE
-from ..solvers.substeps import run_panels
 from ..system import System
+from .tangents import drive, rows, trajectories
 from .windows import Windows
 
 Array = Any
@@ -59,6 +58,10 @@ class Problem(eqx.Module):
         """All parameter values, shape (p,)."""
         return self.base + self.directions @ theta
 
+    def rebuild(self, theta: Array) -> System:
+        """The system with the free parameters at ``theta``."""
+        return unravel(self.system, self.parameters(theta))
+
 
 class Blocks(eqx.Module):
     """Normal equations J^T J and gradient J^T r by blocks; B = n + m unknowns a window.
@@ -84,33 +87,26 @@ class Prediction(eqx.Module):
     end: Array
 
 
-def predict(problem: Problem, theta: Array, start: Array, local: Array, t0: Array, force: Array) -> Prediction:
-    """Simulate one window.
+def predictions(problem: Problem, unknowns: Unknowns) -> Prediction:
+    """Predictions of all windows, stacked on the leading axis."""
+    return _predict(problem, unknowns)[0]
 
-    Parameters
-    ----------
-    theta : (q,) free parameters
-    start : (n,) state at the first sample
-    local : (m + 5,) spline coefficients, the last five shared with the next window
-    t0 : start time [s]
-    force : (P+1,) force at panel edges
-    """
+
+def _predict(problem: Problem, unknowns: Unknowns) -> tuple[Prediction, Any, Array, Array]:
     w = problem.windows
-    system = unravel(problem.system, problem.parameters(theta))
-    u, du = _input(w, system.lag(), local)
-    zero = jnp.zeros(force.shape)
-    edges = (zero, zero, force + u, du) if w.by_force else (u, du, force, None)
-    drive = Panelled(t0, w.panel, *edges)
-    state = tuple(start[i] for i in range(start.shape[0]))
-    end, states = run_panels(
-        system, t0, state, drive.grid(t0, w.panel, force.shape[0] - 1), w.panel, w.every, system.has_play
-    )
-    at = drive.grid(t0, w.panel, 0)
-    samples = jax.tree.map(lambda u: u[: -1 : w.every], at)
-    times = t0 + w.panel * w.every * jnp.arange(w.samples)
-    motion = jax.vmap(system.output)(times, states, samples)
-    measured = w.basis[0, : -1 : w.every] @ local if w.intervals else jnp.zeros((0,))
-    return Prediction(motion, measured, jnp.stack(end))
+    system = problem.rebuild(unknowns.theta)
+    local = _local(unknowns.coefficients)
+    u, du = jax.vmap(lambda c: _input(w, system.lag(), c))(local)
+    end, states = trajectories(w, system, unknowns.starts, u, du)
+    kept = tuple(s[:, :: w.every] for s in states)
+    at = jax.vmap(jax.vmap(lambda u, du, f: drive(w, u, du, f)))(u, du, w.force)
+    samples = jax.tree.map(lambda v: v[:, : -1 : w.every], at)
+    times = w.t0[:, None] + w.panel * w.every * jnp.arange(w.samples)
+    motion = jax.vmap(jax.vmap(system.output))(times, kept, samples)
+    measured = local @ w.basis[0, : -1 : w.every].T
+    if not w.intervals:
+        measured = jnp.zeros((w.count, 0))
+    return Prediction(motion, measured, end.T), states, u, du
 
 
 def _input(w: Windows, lag: Array | None, local: Array) -> tuple[Array, Array]:
@@ -131,19 +127,25 @@ def _input(w: Windows, lag: Array | None, local: Array) -> tuple[Array, Array]:
     return u, du
 
 
+def _input_tangents(problem: Problem, theta: Array, local: Array) -> tuple[Array, Array | None]:
+    w = problem.windows
+    lag = lambda theta: problem.rebuild(theta).lag()  # noqa: E731
+    delay = lag(theta)
+    if not w.intervals:
+        return jnp.zeros((2, w.basis.shape[1], 0)), None
+    basis = jnp.stack(_input(w, delay, jnp.eye(local.shape[1])))
+    if delay is None:
+        return basis, None
+    by_lag = jax.jvp(lambda tau: jnp.stack(_input(w, tau, local.T)), (delay,), (jnp.ones_like(delay),))[1]
+    return basis, jnp.swapaxes(by_lag, 1, 2)[..., None] * jax.jacfwd(lag)(theta)
+
+
 def _local(coefficients: Array) -> Array:
     """Own coefficients and the first five of the next window, shape (W, m + 5)."""
     if coefficients.shape[1] == 0:
         return coefficients
     following = jnp.concatenate([coefficients[1:], jnp.zeros_like(coefficients[:1])])
     return jnp.concatenate([coefficients, following[:, :DEGREE]], axis=1)
-
-
-def predictions(problem: Problem, unknowns: Unknowns) -> Prediction:
-    """Predictions of all windows, stacked on the leading axis."""
-    w = problem.windows
-    one = lambda s, c, t0, f: predict(problem, unknowns.theta, s, c, t0, f)  # noqa: E731
-    return jax.vmap(one, in_axes=(1, 0, 0, 0))(unknowns.starts, _local(unknowns.coefficients), w.t0, w.force)
 
 
 def residuals(problem: Problem, unknowns: Unknowns, predicted: Prediction | None = None) -> tuple[Array, Array, Array]:
@@ -168,35 +170,28 @@ def _tie_weight(problem: Problem, unknowns: Unknowns) -> Array:
 def linearise(problem: Problem, unknowns: Unknowns) -> tuple[Blocks, Prediction]:
     """Residuals and the blocks of the normal equations at a point.
 
-    Tangents are pushed through each window in forward mode, one for each of its n + m + 5 unknowns and q parameters.
+    Each window has n + m + 5 unknowns and meets the q parameters; the derivatives come from `tangents.rows`.
     """
     w = problem.windows
     n, q, m = unknowns.starts.shape[0], unknowns.theta.shape[0], w.intervals
     local = _local(unknowns.coefficients)
-    free = local.shape[1]
-    seeds = jnp.eye(n + free + q)
-
-    def one(s: Array, c: Array, t0: Array, f: Array) -> tuple[Prediction, Prediction]:
-        run = lambda s, c, th: predict(problem, th, s, c, t0, f)  # noqa: E731
-        push = lambda e: jax.jvp(run, (s, c, unknowns.theta), (e[:n], e[n : n + free], e[n + free :]))  # noqa: E731
-        return jax.vmap(push, out_axes=(None, 0))(seeds)
-
-    predicted, tangents = jax.vmap(one, in_axes=(1, 0, 0, 0))(unknowns.starts, local, w.t0, w.force)
+    predicted, states, u, du = _predict(problem, unknowns)
+    basis, lagged = _input_tangents(problem, unknowns.theta, local)
+    motion_rows, end_rows = rows(w, problem.rebuild, unknowns.theta, states, u, du, basis, lagged)
     motion, base, tie = residuals(problem, unknowns, predicted)
     tie_weight = _tie_weight(problem, unknowns)
-    rows = jnp.concatenate(
-        [
-            tangents.motion * w.weight[:, None, :],
-            tangents.input * w.input_weight[:, None, :],
-            tangents.end * tie_weight[:, None, :],
-        ],
-        axis=2,
-    )
-    right = jnp.concatenate([motion, base, tie], axis=1)
-    gram = jnp.einsum("wir,wjr->wij", rows, rows)
-    slope = jnp.einsum("wir,wr->wi", rows, right)
-    cost = 0.5 * jnp.sum(right**2)
-    blocks = _assemble(gram, slope, rows[:, :, -n:], tie, tie_weight, n, m, q, cost)
+    weighted = jnp.concatenate([motion_rows * w.weight[:, None, :], end_rows * tie_weight[:, None, :]], axis=2)
+    gram = jnp.einsum("wir,wjr->wij", weighted, weighted)
+    slope = jnp.einsum("wir,wr->wi", weighted, jnp.concatenate([motion, tie], axis=1))
+    if w.intervals:
+        # The input's own samples meet its coefficients alone.
+        seen = w.basis[0, : -1 : w.every]
+        scaled = seen * w.input_weight[:, :, None]
+        own = jnp.einsum("wri,wrj->wij", scaled, scaled)
+        gram = gram + jnp.pad(own, ((0, 0), (n, q), (n, q)))
+        slope = slope + jnp.pad(jnp.einsum("wri,wr->wi", scaled, base), ((0, 0), (n, q)))
+    cost = 0.5 * (jnp.sum(motion**2) + jnp.sum(base**2) + jnp.sum(tie**2))
+    blocks = _assemble(gram, slope, weighted[:, :, -n:], tie, tie_weight, n, m, q, cost)
     return _ridge(problem, unknowns, blocks, n), predicted
 
 

@@ -7,6 +7,8 @@ period suffice, and it gives rates without differencing samples.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import BSpline
@@ -45,20 +47,33 @@ def fit_spline(t: np.ndarray, values: np.ndarray, t0: float, spacing: float) -> 
     t0 : where the first knot interval begins, at most ``t[0]``
     spacing : distance of the knots [s]
     """
-    intervals = int(np.floor((t[-1] - t0) / spacing + 1e-9)) + 1
-    count = intervals + DEGREE
-    design = BSpline.design_matrix(t, knots(t0, spacing, count), DEGREE).tocsr()
-    gram = (design.T @ design).todia()
+    dt = (t[-1] - t[0]) / (t.size - 1)
+    design, transposed, factor = _least_squares(t.size, round((t[0] - t0) / dt, 6), round(spacing / dt, 9))
+    count = design.shape[1]
+    coefficients = cho_solve_banded((factor, False), transposed @ values)
+    residual = values - design @ coefficients
+    noise = float(np.sqrt(np.sum(residual**2) / max(t.size - count, 1)))
+    return SmoothMotion(t0, spacing, coefficients, noise)
+
+
+@lru_cache(maxsize=32)
+def _least_squares(samples: int, first: float, spacing: float) -> tuple[Any, Any, np.ndarray]:
+    """Design matrix, its transpose and the Cholesky factor of the normal equations, all in units of the sample spacing.
+
+    The channels of a record share their sample times, so each spacing is factored once for all of them.
+    """
+    t = first + np.arange(samples)
+    count = int(np.floor(t[-1] / spacing + 1e-9)) + 1 + DEGREE
+    design = BSpline.design_matrix(t, knots(0.0, spacing, count), DEGREE).tocsr()
+    transposed = design.T.tocsr()
+    gram = (transposed @ design).todia()
     bands = np.zeros((DEGREE + 1, count))
     for offset, diagonal in zip(gram.offsets, gram.data):
         if 0 <= offset <= DEGREE:
             bands[DEGREE - offset] = np.pad(diagonal, (0, max(0, count - diagonal.size)))[:count]
     # The last intervals may hold few samples: a whisper of ridge keeps them defined.
     bands[DEGREE] += 1e-10 * bands[DEGREE].max()
-    coefficients = cho_solve_banded((cholesky_banded(bands), False), design.T @ values)
-    residual = values - design @ coefficients
-    noise = float(np.sqrt(np.sum(residual**2) / max(t.size - count, 1)))
-    return SmoothMotion(t0, spacing, coefficients, noise)
+    return design, transposed, cholesky_banded(bands)
 
 
 def choose_intervals(t: np.ndarray, values: np.ndarray, window: float, *, least: int = DEGREE, longest: int = 12_000) -> int:
@@ -80,7 +95,7 @@ def choose_intervals(t: np.ndarray, values: np.ndarray, window: float, *, least:
     dt = (t[-1] - t[0]) / (t.size - 1)
     most = max(least, int(window / (2.0 * dt)))
     candidates = sorted({min(most, max(least, round(least * 1.26**k))) for k in range(24)})
-    best, lowest = candidates[0], np.inf
+    best, lowest, rising = candidates[0], np.inf, 0
     # A signal without noise would ask for ever more knots; a millionth of its size is as good as exact.
     floor = (NEGLIGIBLE * np.std(values)) ** 2
     for intervals in candidates:
@@ -89,8 +104,11 @@ def choose_intervals(t: np.ndarray, values: np.ndarray, window: float, *, least:
         if free < 16:
             break
         criterion = t.size * np.log(max(fitted.noise**2 * free / t.size + floor, 1e-300)) + 2.0 * fitted.coefficients.size
+        rising = rising + 1 if criterion > lowest else 0
         if criterion < lowest:
             best, lowest = intervals, criterion
+        if rising == 3:
+            break
     return int(min(most, np.ceil(1.5 * best)))
 
 

@@ -5,4 +5,5 @@ from .panels import advance as advance
 from .panels import advance_smooth as advance_smooth
 from .substeps import DrivenTerm as DrivenTerm
 from .substeps import PanelRK4 as PanelRK4
+from .substeps import one_panel as one_panel
 from .substeps import run_panels as run_panels

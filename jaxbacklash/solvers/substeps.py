@@ -84,6 +84,19 @@ class PanelRK4(diffrax.AbstractSolver):
         return y1, None, {"edges": kept}, None, diffrax.RESULTS.successful
 
 
+def one_panel(system: Any, t: Any, state: Any, a: Any, b: Any, h: Any, located: bool) -> Any:
+    """The state one panel of length ``h`` [s] after ``t``, the drive given as ``a`` and ``b`` at the panel's two edges."""
+    base = Cubic.hermite(a.x, a.dx, b.x, b.dx, h)
+    force = Cubic.between(a.force, a.dforce, b.force, b.dforce, h)
+
+    def drive_at(tau: Any) -> Any:
+        return type(a)(base.at(tau), base.slope(tau), force.at(tau))
+
+    if located:
+        return advance(system, t, state, drive_at, base, h)
+    return advance_smooth(system, t, state, drive_at, h)
+
+
 def run_panels(
     system: Any, t: Any, state: Any, edges: Any, h: Any, every: int, located: bool
 ) -> tuple[Any, Any]:
@@ -106,16 +119,7 @@ def run_panels(
 
     def panel(carry: Any, at: Any) -> Any:
         t, state = carry
-        a, b = at
-        base = Cubic.hermite(a.x, a.dx, b.x, b.dx, h)
-        force = Cubic.between(a.force, a.dforce, b.force, b.dforce, h)
-
-        def drive_at(tau: Any) -> Any:
-            return type(edges)(base.at(tau), base.slope(tau), force.at(tau))
-
-        if located:
-            return (t + h, advance(system, t, state, drive_at, base, h)), None
-        return (t + h, advance_smooth(system, t, state, drive_at, h)), None
+        return (t + h, one_panel(system, t, state, *at, h, located)), None
 
     def sample(carry: Any, at: Any) -> Any:
         if every == 1:
