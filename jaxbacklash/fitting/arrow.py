@@ -16,15 +16,17 @@ Array = Any
 
 
 class ArrowSolution(eqx.Module):
-    """Step for the local unknowns ``local`` (W, B) and parameters ``theta`` (q,), and ``schur`` (q, q).
+    """Step for the local unknowns ``local`` (W, B) and parameters ``theta`` (q,), ``schur`` (q, q) and ``pull`` (q,).
 
     ``schur`` is the information about the parameters with all local unknowns marginalised; its inverse is their
-    covariance when the blocks are those of J^T J with unit-variance residuals.
+    covariance when the blocks are those of J^T J with unit-variance residuals. ``pull`` is minus the gradient of the cost
+    with the local unknowns following: the score.
     """
 
     local: Array
     theta: Array
     schur: Array
+    pull: Array
 
 
 def solve(blocks: Blocks, damping: Array) -> ArrowSolution:
@@ -71,7 +73,7 @@ def solve(blocks: Blocks, damping: Array) -> ArrowSolution:
         return own, own
 
     _, local = jax.lax.scan(back, jnp.zeros(size), (factors, half_below, half_edge), reverse=True)
-    return ArrowSolution(local, theta, schur)
+    return ArrowSolution(local, theta, schur, right)
 
 
 def _solve_scaled(matrix: Array, right: Array) -> Array:

@@ -171,9 +171,12 @@ def fit(
     )  # fmt: skip
 
 
-def _tie(problem: Problem, unknowns: Unknowns, ties: Sequence[float]) -> tuple[Problem, optx.Solution, int]:
+def tie_windows(
+    problem: Problem, unknowns: Unknowns, ties: Sequence[float], *, limit: int = 60
+) -> tuple[Problem, optx.Solution, int]:
+    """Tie the windows as sharply as ``ties`` say, one after the other: the tied problem, its solution, the steps taken."""
     # Free windows end close to the tied ones: a damped step would only fight the ties, which are stiff.
-    solver, steps = ArrowLevenbergMarquardt(damping=1e-9), 0
+    solver, steps = ArrowLevenbergMarquardt(damping=1e-9, limit=limit), 0
     for tightness in ties:
         problem = eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(tightness))
         solution = minimise(problem, unknowns, solver)
@@ -195,15 +198,20 @@ class Found:
     steps: int
 
 
-def prepare(system: System, records: Sequence[Record], window: float) -> tuple[Windows, Layout, int]:
-    """Shooting windows for a system like this one, and how many of them make a score window of the wished length."""
+def prepare(
+    system: System, records: Sequence[Record], window: float, *, intervals: int = 0
+) -> tuple[Windows, Layout, int]:
+    """Shooting windows for a system like this one, and how many of them make a score window of the wished length.
+
+    ``intervals`` asks for at least so many spline intervals a window, so that two records may share a compiled program.
+    """
     shooting = 0.5 * window if window < 2 * SHOOTING_WINDOW else SHOOTING_WINDOW
     longest = LONGEST_PANEL
     if system.contact is not None:
         # Thirty-two panels a period of the contact resonance keep the integration error a thousandth of an encoder's noise.
         omega = np.sqrt(float(system.contact.stiffness) / float(system.inertia))
         longest = min(longest, max(2.0 * np.pi / max(omega, 1e-9) / 32.0, records[0].dt / 16.0))
-    windows, layout = cut(records, shooting, longest_panel=longest)
+    windows, layout = cut(records, shooting, longest_panel=longest, least=intervals)
     return windows, layout, max(1, round(window / (layout.length * layout.dt)))
 
 
@@ -242,14 +250,14 @@ def search(
 
     steps = int(best.stats["state"].steps)
     tied = False
-    if np.sqrt(2.0 * cost / _freedom(best.value, windows)) < ADEQUATE:
+    if np.sqrt(2.0 * cost / freedom(best.value, windows)) < ADEQUATE:
         progress("tying the windows into one trajectory", 0.7)
         for ties in TIES:
-            joined, solution, taken = _tie(problem, best.value, ties)
+            joined, solution, taken = tie_windows(problem, best.value, ties)
             steps += taken
             after = float(solution.stats["state"].blocks.cost)
             # Tied windows may disagree where a chaotic record and a slightly wrong model part ways; then they stay apart.
-            if np.sqrt(2.0 * after / _freedom(solution.value, windows)) < ADEQUATE:
+            if np.sqrt(2.0 * after / freedom(solution.value, windows, tied=True)) < ADEQUATE:
                 best, problem, cost, tied = solution, joined, after, True
                 break
     scale = np.asarray(jnp.sum(problem.directions, axis=0))
@@ -270,11 +278,13 @@ def predict_record(
     return score(problem, first_guess(problem), layout, group=group)[0][0]
 
 
-def _freedom(unknowns: Unknowns, windows: Windows) -> float:
+def freedom(unknowns: Unknowns, windows: Windows, *, tied: bool = False) -> float:
+    """Samples less the unknowns: each window's own spline coefficients and, unless it is tied to the one before, its start."""
     samples = float(np.sum(np.asarray(windows.weight) > 0.0))
     moving = float(np.sum(np.asarray(windows.input_weight) > 0.0))
     used = float(np.sum(np.any(np.asarray(windows.weight) > 0.0, axis=1)))
-    return samples + moving - used * (windows.intervals + unknowns.starts.shape[0])
+    starts = used - (float(np.sum(np.asarray(windows.tie))) if tied else 0.0)
+    return samples + moving - used * windows.intervals - starts * unknowns.starts.shape[0]
 
 
 def _inverse(schur: np.ndarray) -> np.ndarray:

@@ -35,12 +35,13 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
     ``fn`` is not differentiated as a whole: ``args`` is the `Problem`, whose blocks are built by
     `jaxbacklash.fitting.shooting.linearise`. The search ends when a full step promises to lower half the sum of squares by less
     than ``atol`` (in units of the noise, so 1e-3 means that no parameter would move by 5 % of its standard error), or by
-    less than ``rtol`` of its value.
+    less than ``rtol`` of its value, or after ``limit`` linearisations; a limit of 1 only looks at the start.
     """
 
     rtol: float = eqx.field(default=0.0, static=True)
     atol: Array = eqx.field(default=1e-3, converter=np.asarray)
     damping: Array = eqx.field(default=1e-3, converter=np.asarray)
+    limit: Array = eqx.field(default=60, converter=np.asarray)
     norm: Any = eqx.field(default=optx.max_norm, static=True)
 
     def init(self, fn: Any, y: Unknowns, args: Problem, options: Any, f_struct: Any, aux_struct: Any, tags: Any) -> ArrowState:
@@ -88,13 +89,14 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         rows = jnp.sum(args.windows.weight > 0.0)
         small = state.gain < self.atol * jnp.maximum(1.0, 2.0 * state.blocks.cost / (rows + 1.0))
         # A promise under heavy damping says little; wait until the damping has come down or nothing helps any more.
-        done = (small & (state.damping < 1.0)) | (state.damping > 1e11)
+        done = (small & (state.damping < 1.0)) | (state.damping > 1e11) | (state.steps >= self.limit)
         return done & state.ready, optx.RESULTS.successful
 
     def postprocess(
         self, fn: Any, y: Unknowns, aux: Any, args: Problem, options: Any, state: ArrowState, tags: Any, result: Any
     ) -> Any:
-        return y, aux, {"state": state, "schur": solve(state.blocks, jnp.asarray(0.0)).schur}
+        undamped = solve(state.blocks, jnp.asarray(0.0))
+        return y, aux, {"state": state, "schur": undamped.schur, "pull": undamped.pull}
 
 
 def _keep_sign(problem: Problem, old: Array, new: Array) -> Array:
@@ -107,8 +109,9 @@ def _keep_sign(problem: Problem, old: Array, new: Array) -> Array:
 
 
 @eqx.filter_jit
-def minimise(problem: Problem, start: Unknowns, solver: ArrowLevenbergMarquardt, max_steps: int = 60) -> optx.Solution:
-    """Run the search from ``start``; the solution's ``stats`` hold the final `ArrowState` and the ``schur`` information."""
+def minimise(problem: Problem, start: Unknowns, solver: ArrowLevenbergMarquardt, max_steps: int = 200) -> optx.Solution:
+    """Run the search from ``start``; the solution's ``stats`` hold the final `ArrowState`, the ``schur`` information and
+    the ``pull``, both undamped."""
 
     def residual(y: Unknowns, args: Problem) -> Array:
         # optimistix asks only for its structure: the solver builds residuals and blocks together.

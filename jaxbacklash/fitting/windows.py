@@ -84,7 +84,9 @@ def bucket(count: int) -> int:
     return int(size)
 
 
-def cut(records: Sequence[Record], window: float, *, longest_panel: float = LONGEST_PANEL) -> tuple[Windows, Layout]:
+def cut(
+    records: Sequence[Record], window: float, *, longest_panel: float = LONGEST_PANEL, least: int = 0
+) -> tuple[Windows, Layout]:
     """Cut one or more records of the same rate and kind into shooting windows.
 
     Parameters
@@ -92,6 +94,7 @@ def cut(records: Sequence[Record], window: float, *, longest_panel: float = LONG
     records : records with the same channels and sample spacing
     window : wished length of a window [s]; rounded to whole samples, at least 8
     longest_panel : longest integration panel [s]
+    least : smallest number of spline intervals a window, where there is a spline
 
     Raises
     ------
@@ -116,7 +119,7 @@ def cut(records: Sequence[Record], window: float, *, longest_panel: float = LONG
     intervals = 0
     if driver is not None:
         intervals = max(choose_intervals(r.t, r.channels[driver], length * dt) for r in records)
-        intervals = -(-intervals // 4) * 4  # a step of four keeps the number of compiled shapes small
+        intervals = -(-max(intervals, least) // 4) * 4  # a step of four keeps the number of compiled shapes small
     parts = [_cut_one(r, length, every, intervals, driver) for r in records]
     total = bucket(sum(p["measured"].shape[0] for p in parts))
     stacked: dict[str, np.ndarray] = {}

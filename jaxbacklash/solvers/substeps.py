@@ -119,7 +119,7 @@ def run_panels(
 
     def panel(carry: Any, at: Any) -> Any:
         t, state = carry
-        return (t + h, one_panel(system, t, state, *at, h, located)), None
+        return (t + h, one_panel(system, t, state, at[0], at[1], h, located)), None
 
     def sample(carry: Any, at: Any) -> Any:
         if every == 1:

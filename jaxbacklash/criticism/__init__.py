@@ -1,0 +1,1 @@
+r"""Where a model fails, which effect is missing, and the loop that adds it."""

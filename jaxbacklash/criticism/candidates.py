@@ -1,0 +1,104 @@
+r"""Which absent effects would lower the misfit: a score test of all of them at their null values, from one set of sensitivities.
+
+With the information S and the score g of all columns, the joint's and the candidate's, windows marginalised, adding the
+candidate is predicted to lower twice the cost by :math:`g^T S^{-1} g` more than the joint alone would. Parameters that shape a
+law but do not act at its null value are scanned over the law's own guesses; strengths that physics bounds on one side count on that side only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+
+from ..fitting.fit import TIES
+from ..mechanics import AbstractEffect
+from ..parameters import specs, with_values
+from .workbench import Trial, Workbench, strengths, width
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """An absent effect: ``effect`` at its predicted values, ``gain`` the predicted fall of twice the cost, ``predicted`` the misfit
+    after adding it in units of the noise, ``moved`` predicted values of the joint's free parameters."""
+
+    name: str
+    effect: AbstractEffect
+    gain: float
+    predicted: float
+    moved: dict[str, float]
+
+
+def rank(bench: Workbench, trial: Trial, names: Iterable[str] | None = None) -> list[Candidate]:
+    """All absent effects, the most telling first.
+
+    Parameters
+    ----------
+    bench : the compiled models of a record
+    trial : a fitted model
+    names : the effects to judge; default every absent one without internal states
+    """
+    absent = [n for n in (bench.static if names is None else names) if n not in trial.names]
+    shapes = {n: shaped(bench, trial, n) for n in absent}
+    found = [c for group in _groups(bench, trial, shapes) for c in _score(bench, trial, shapes, group)]
+    return sorted(found, key=lambda c: -c.gain)
+
+
+def shaped(bench: Workbench, trial: Trial, name: str) -> AbstractEffect:
+    """The law at its null strength, at the likeliest of the shapes it may have."""
+    guesses = bench.laws[name].guesses(trial.system)
+    guess = bench.quick.choose(trial.system, trial.free, guesses)[0]
+    described = specs(guess)
+    return with_values(guess, {n: float(described[n].null or 0.0) for n in strengths(guess)})
+
+
+def _groups(bench: Workbench, trial: Trial, shapes: dict[str, AbstractEffect]) -> list[list[str]]:
+    """The candidates in groups that fit beside the model's own parameters into one set of columns."""
+    room = width(len(trial.free) + max((len(strengths(e)) for e in shapes.values()), default=0)) - len(trial.free)
+    groups: list[list[str]] = []
+    taken = room
+    for name, effect in shapes.items():
+        columns = len(strengths(effect))
+        if taken + columns > room:
+            groups.append([])
+            taken = 0
+        groups[-1].append(name)
+        taken += columns
+    return groups
+
+
+def _score(bench: Workbench, trial: Trial, shapes: dict[str, AbstractEffect], group: list[str]) -> list[Candidate]:
+    columns = [(name, n) for name in group for n in strengths(shapes[name])]
+    problem, free = bench.problem(
+        bench.effects(trial), trial.system, extra=[f"{name}.{n}" for name, n in columns], shapes=shapes
+    )
+    problem = eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(TIES[0][-1] if trial.tied else 0.0))
+    schur, pull, cost, scales = bench.look(problem, trial.unknowns)
+    q = len(trial.free)
+    found = []
+    for name in group:
+        own = [q + j for j, (other, _) in enumerate(columns) if other == name]
+        index = [*range(q), *own]
+        step, gain = _gain(schur[np.ix_(index, index)], pull[index], q)
+        step = step * scales[index]
+        described = specs(shapes[name])
+        moved = {n: described[n].null + size for n, size in zip(strengths(shapes[name]), step[q:])}
+        if not all(described[n].lower <= v <= described[n].upper for n, v in moved.items()):
+            moved = {n: float(np.clip(v, described[n].lower, described[n].upper)) for n, v in moved.items()}
+            gain = 0.0
+        left = max(2.0 * cost - gain, 0.0)
+        predicted = trial.misfit * np.sqrt(left / max(2.0 * cost, 1e-300))
+        joint = {n: trial.value[n] + float(size) for n, size in zip(trial.free, step[:q])}
+        found.append(Candidate(name, with_values(shapes[name], moved), gain, float(predicted), joint))
+    return found
+
+
+def _gain(schur: np.ndarray, pull: np.ndarray, q: int) -> tuple[np.ndarray, float]:
+    scale = np.sqrt(np.maximum(np.diag(schur), 1e-300))
+    scaled, score = schur / np.outer(scale, scale), pull / scale
+    step = np.linalg.pinv(scaled, rcond=1e-10, hermitian=True) @ score
+    without = np.linalg.pinv(scaled[:q, :q], rcond=1e-10, hermitian=True) @ score[:q]
+    return step / scale, float(score @ step - score[:q] @ without)

@@ -1,0 +1,186 @@
+"""The loop: fit the joint, see what it leaves, add what explains it, check again, and say when to stop."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+
+from ..errors import BadInput
+from ..fitting.estimates import judge
+from ..fitting.fit import SCORE_WINDOW, TIES, Fit, prepare, silent
+from ..fitting.score import Score, score
+from ..fitting.setup import base_system, first_guess, free_names
+from ..fitting.shooting import Problem, Unknowns
+from ..parameters import values, with_values
+from ..precision import require_double_precision
+from ..records import Record
+from ..system import System
+from .candidates import Candidate
+from .search import Search
+from .verdict import Verdict, alternatives, judge_rest
+from .workbench import Trial, Workbench
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One model kept: the effect ``added`` (None at first), those ``dropped`` with it, its `Fit`, the ``ranking`` of what was
+    still absent, and the ``evidence`` of the candidates that were really refitted."""
+
+    added: str | None
+    dropped: tuple[str, ...]
+    fit: Fit
+    ranking: tuple[Candidate, ...]
+    evidence: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """What the loop found.
+
+    Attributes: ``stages``, the last one is the model kept; ``alternatives``, other sets of effects that the record cannot tell apart
+    from it; ``verdict``; ``search`` with every model tried; ``seconds``.
+    """
+
+    stages: tuple[Stage, ...]
+    alternatives: tuple[tuple[str, ...], ...]
+    verdict: Verdict
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    @property
+    def fit(self) -> Fit:
+        """The model kept."""
+        return self.stages[-1].fit
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Names of what was missing."""
+        return tuple(sorted(self.fit.system.effects))
+
+    def __str__(self) -> str:
+        from .print_refinement import text
+
+        return text(self)
+
+
+def refine(
+    record: Record,
+    *,
+    heldout: Record | None = None,
+    model: str = "joint",
+    inertia: float | None = None,
+    system: System | None = None,
+    window: float = SCORE_WINDOW,
+    translational: bool = False,
+    seed: int = 0,
+    progress: Callable[[str, float], None] = silent,
+) -> Refinement:
+    """Find the effects that a record needs beyond its base model.
+
+    Parameters
+    ----------
+    record : what was measured
+    heldout : a record of the same joint that is only predicted
+    model : ``"joint"``, ``"linear"`` or ``"free"``; ignored when ``system`` is given
+    inertia : J [kg m^2]; None: fitted to force-driven records, else values are per unit inertia
+    system : a system to start from instead of an estimate from the data
+    window : length of the windows whose error is quoted [s]
+    translational : units of a translating mass
+    seed : seed of everything random
+    progress : told the stage in words and the share of the work done
+
+    Raises
+    ------
+    BadInput
+        Records that cannot carry the model.
+    RuntimeError
+        JAX is in single precision.
+    """
+    require_double_precision("refine")
+    if heldout is not None and heldout.kind != record.kind:
+        raise BadInput(f"{heldout.path}: is a {heldout.kind} record, {record.path} a {record.kind} record; wanted two of a kind")
+    clock = {"start": time.perf_counter()}
+    progress("reading noise and a first estimate", 0.02)
+    start = None
+    if system is None:
+        system, names, start = base_system(record, model, inertia)
+    else:
+        names, model = free_names(system), "given"
+    bench = Workbench(record, system, names, window, beside=heldout)
+    search = Search(bench, progress)
+    clock["prepare"] = time.perf_counter()
+    steps = search.run()
+    clock["search"] = time.perf_counter()
+
+    progress("scoring predictions", 0.85)
+    per_inertia = inertia is None and record.kind != "force" and model != "given"
+    judged = _Judge(bench, heldout, model, per_inertia, translational, start)
+    stages = tuple(Stage(s.added, s.dropped, judged(s.trial), s.ranking, s.evidence) for s in steps)
+    clock["score"] = time.perf_counter()
+    progress("looking for alternatives", 0.92)
+    others = alternatives(search, steps[-1].trial)
+    verdict = judge_rest(bench, steps[-1].trial, [s.fit for s in stages])
+    clock["alternatives"] = time.perf_counter()
+    marks = list(clock.items())
+    seconds = {name: at - before for (_, before), (name, at) in zip(marks[:-1], marks[1:])}
+    return Refinement(stages, others, verdict, seconds)
+
+
+class _Judge:
+    """Makes a `Fit`, with scores and intervals, of every model kept."""
+
+    def __init__(
+        self, bench: Workbench, heldout: Record | None, model: str, per_inertia: bool, translational: bool, start: object
+    ) -> None:
+        self.bench, self.heldout, self.model = bench, heldout, model
+        self.per_inertia, self.translational, self.start = per_inertia, translational, start
+
+    def __call__(self, trial: Trial) -> Fit:
+        bench = self.bench
+        problem, free = bench.problem(bench.effects(trial), trial.system)
+        still = Unknowns(jnp.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
+        scored, _ = score(problem, still, bench.layout, group=bench.group)
+        held = None if self.heldout is None else self._predict(problem)
+        q = len(free)
+        scales = trial.scales[:q]
+        scaled = np.linalg.pinv(_unit(trial.schur[:q, :q]), rcond=1e-14, hermitian=True)
+        sizes = 1.0 / np.sqrt(np.maximum(np.diag(trial.schur)[:q], 1e-300))
+        covariance = max(1.0, trial.misfit**2) * scaled * np.outer(sizes * scales, sizes * scales)
+        stderr = dict(zip(free, np.sqrt(np.maximum(np.diag(covariance), 0.0))))
+        plain = pruned(trial)
+        records = (bench.record,)
+        estimates = judge(
+            plain, free, stderr, records, per_inertia=self.per_inertia, translational=self.translational
+        )
+        joined = eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(TIES[0][-1] if trial.tied else 0.0))
+        return Fit(
+            plain, free, estimates, scored, held, records, bench.layout.noise, bench.layout.input_noise, covariance, 1, 1,
+            trial.tied, trial.cost, 0, self.start, self.model, self.per_inertia, self.translational, {}, joined, still,
+        )  # fmt: skip
+
+    def _predict(self, problem: Problem) -> Score:
+        assert self.heldout is not None
+        windows, layout, group = prepare(self.bench.base, [self.heldout], self.bench.window, intervals=self.bench.windows.intervals)
+        if self.bench.noise_factor != 1.0:
+            factor = self.bench.noise_factor
+            windows = eqx.tree_at(lambda w: (w.weight, w.drop), windows, (windows.weight / factor, windows.drop / factor))
+        other = eqx.tree_at(lambda p: p.windows, problem, windows)
+        return score(other, first_guess(other), layout, group=group)[0][0]
+
+
+def pruned(trial: Trial) -> System:
+    """The fitted system without the laws that stand at their null values."""
+    full = trial.system
+    bare = System(full.inertia, full.contact, full.damper, {n: full.effects[n] for n in trial.names}, full.observed)
+    return with_values(bare, values(bare))
+
+
+def _unit(matrix: np.ndarray) -> np.ndarray:
+    size = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
+    return matrix / np.outer(size, size)
+
+

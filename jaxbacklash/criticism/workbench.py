@@ -1,0 +1,227 @@
+"""One compiled program for every model of a record: the joint with the whole catalogue at its null values.
+
+Which effects are in a model is data, not code: a model is a set of names, and a fit of it moves the joint's parameters and those
+of the effects named, through a matrix of directions with a fixed number of columns. Laws with internal states change the number
+of unknowns a window has, so each of those brings a program of its own, compiled when it is first tried.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+
+from ..fitting.fit import ADEQUATE, freedom, prepare, tie_windows
+from ..fitting.levenberg import ArrowLevenbergMarquardt, minimise
+from ..fitting.setup import first_guess, free_names, make_problem
+from ..fitting.shooting import Problem, Unknowns
+from ..fitting.windows import Layout, Windows
+from ..mechanics import AbstractEffect, catalogue
+from ..parameters import specs, values, with_values
+from ..records import Record
+from ..system import System
+from .quick_look import QuickLook
+
+COLUMNS = 10
+"""Free parameters in steps of this many, so that adding one compiles nothing."""
+PATIENCE = 25
+"""Linearisations spent on a model before it is compared with others; the one that is kept is finished."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A fitted model: ``effects`` as fitted, by name; ``parameters`` free ones by name; ``cost`` half the sum of squares.
+
+    ``misfit`` is the root of the reduced chi-square; ``schur`` (q, q) the information in units of ``scales`` (q,); ``pull``
+    (q,) the score of every column at the end; ``tied`` whether the windows are one trajectory; ``done`` whether it converged;
+    ``penalty`` of the criterion; ``correlation`` how many samples of the residual count for one.
+    """
+
+    system: System
+    names: frozenset[str]
+    free: tuple[str, ...]
+    unknowns: Unknowns = field(repr=False)
+    cost: float
+    misfit: float
+    schur: np.ndarray = field(repr=False)
+    pull: np.ndarray = field(repr=False)
+    scales: np.ndarray = field(repr=False)
+    tied: bool
+    done: bool
+    penalty: float
+    correlation: float
+
+    @property
+    def value(self) -> dict[str, float]:
+        """Values of the free parameters by name."""
+        present = values(self.system)
+        return {name: present[name] for name in self.free}
+
+    @property
+    def criterion(self) -> float:
+        """Bayesian information criterion with known noise: twice the cost and a penalty a parameter. Less is better."""
+        return 2.0 * self.cost + self.penalty
+
+
+class Workbench:
+    """Fits any model of a record, the joint and some effects, without compiling anything anew.
+
+    Parameters
+    ----------
+    record : what was measured
+    base : the joint with values to start from
+    base_free : its free parameters
+    window : length of the windows whose error is quoted [s]
+    beside : another record that will be predicted with the same program
+    """
+
+    def __init__(
+        self, record: Record, base: System, base_free: Iterable[str], window: float, beside: Record | None = None
+    ) -> None:
+        self.record, self.base, self.base_free, self.window = record, base, tuple(base_free), window
+        self.windows: Windows
+        self.layout: Layout
+        least = 0 if beside is None else prepare(base, [beside], window)[0].intervals
+        self.windows, self.layout, self.group = prepare(base, [record], window, intervals=least)
+        self.noise_factor = 1.0
+        self.laws = {n: c for n, c in catalogue().items() if c.catalogued and applicable(c, base)}
+        self.static = {n: c for n, c in self.laws.items() if not c.states}
+        self.quick = QuickLook(record)
+        self.fits = 0
+
+    def problem(
+        self, effects: dict[str, AbstractEffect], joint: System, *, extra: Iterable[str] = (),
+        shapes: dict[str, AbstractEffect] | None = None,
+    ) -> tuple[Problem, tuple[str, ...]]:  # fmt: skip
+        """The shooting problem with the joint's and these effects' parameters free, padded to a fixed number of columns.
+
+        Parameters
+        ----------
+        effects : by canonical name, as they are; every other static law is there at its null value
+        joint : a system with the joint's values
+        extra : further free parameters by name
+        shapes : how absent laws are shaped, at their null values
+        """
+        shapes = shapes or {}
+        quiet = {name: shapes.get(name, law()) for name, law in self.static.items() if name not in effects}
+        bare = System(joint.inertia, joint.contact, joint.damper, {}, joint.observed)
+        system = bare.with_effects(*quiet.values(), *effects.values())
+        free = (*self.base_free, *(n for n in free_names(system) if n.partition(".")[0] in effects), *extra)
+        return _pad(make_problem(system, self.windows, free)), free
+
+    def fit(
+        self, effects: dict[str, AbstractEffect], start: Trial | None = None, *, joint: System | None = None,
+        tied: bool = False, patience: int = PATIENCE,
+    ) -> Trial:  # fmt: skip
+        """Fit the joint with these effects, from their values and from the windows of an earlier fit.
+
+        Parameters
+        ----------
+        effects : by canonical name, at the values to start from
+        start : a fit whose windows to start from; None takes the smoothed data
+        joint : a system whose joint to start from; default that of ``start``
+        tied : fit one trajectory instead of free windows
+        patience : linearisations allowed
+        """
+        begin = joint if joint is not None else (self.base if start is None else start.system)
+        problem, free = self.problem(effects, begin)
+        unknowns = first_guess(problem)
+        if start is not None:
+            same = start.system.state_names == problem.system.state_names
+            own = start.unknowns.starts if same else unknowns.starts.at[:2].set(start.unknowns.starts[:2])
+            unknowns = Unknowns(unknowns.theta, own, start.unknowns.coefficients)
+        self.fits += 1
+        if tied:
+            problem, solution, _ = tie_windows(problem, unknowns, (100.0,), limit=patience)
+        else:
+            solution = minimise(problem, unknowns, ArrowLevenbergMarquardt(limit=patience, atol=1e-2))
+        return self._trial(problem, solution, frozenset(effects), free, tied, patience)
+
+    def look(self, problem: Problem, unknowns: Unknowns) -> tuple[np.ndarray, np.ndarray, float, np.ndarray]:
+        """Information about all columns (q, q), their score (q,), the cost, and the columns' scales (q,), at a point."""
+        still = Unknowns(jnp.zeros(problem.directions.shape[1]), unknowns.starts, unknowns.coefficients)
+        stats = minimise(problem, still, ArrowLevenbergMarquardt(limit=1)).stats
+        scales = np.asarray(jnp.sum(problem.directions, axis=0))
+        return np.asarray(stats["schur"]), np.asarray(stats["pull"]), float(stats["state"].blocks.cost), scales
+
+    def quieter(self, factor: float) -> None:
+        """Take the noise of the measured channel to be ``factor`` times what it was taken for."""
+        w, layout = self.windows, self.layout
+        self.noise_factor *= factor
+        self.windows = eqx.tree_at(lambda w: (w.weight, w.drop), w, (np.asarray(w.weight) / factor, np.asarray(w.drop) / factor))
+        self.layout = eqx.tree_at(lambda v: v.noise, layout, tuple(factor * n for n in layout.noise))
+
+    def _trial(
+        self, problem: Problem, solution: Any, names: frozenset[str], free: tuple[str, ...], tied: bool, patience: int
+    ) -> Trial:
+        state = solution.stats["state"]
+        cost = float(state.blocks.cost)
+        system = problem.system
+        moved = np.asarray(problem.parameters(solution.value.theta))
+        fitted = with_values(system, dict(zip(values(system), moved)))
+        count = freedom(solution.value, self.windows, tied=tied)
+        rows = float(np.sum(np.asarray(self.windows.weight) > 0.0))
+        hidden = solution.value.starts.shape[0] - 2
+        used = float(np.sum(np.any(np.asarray(self.windows.weight) > 0.0, axis=1)))
+        # An internal state of a free window is a parameter a window.
+        penalty = len(free) * np.log(rows) + (0.0 if tied else 2.0 * hidden * used)
+        return Trial(
+            fitted, names, free, solution.value, cost, float(np.sqrt(2.0 * cost / count)),
+            np.asarray(solution.stats["schur"]), np.asarray(solution.stats["pull"]),
+            np.asarray(jnp.sum(problem.directions, axis=0)), tied, int(state.steps) < patience, float(penalty),
+            _correlation(self.windows, np.asarray(state.predicted.motion)),
+        )  # fmt: skip
+
+    def effects(self, trial: Trial) -> dict[str, AbstractEffect]:
+        """The effects of a fitted model at their fitted values."""
+        return {name: trial.system.effects[name] for name in trial.names}
+
+
+def applicable(law: type[AbstractEffect], base: System) -> bool:
+    """Whether a law can act at all in a joint like this one: laws of the contact need a play or a spring."""
+    return not (base.contact is None and getattr(law, "needs_contact", False))
+
+
+def strengths(effect: AbstractEffect) -> tuple[str, ...]:
+    """Names of the parameters with which a law vanishes."""
+    return tuple(n for n, s in specs(effect).items() if s.null is not None and not s.fixed)
+
+
+def adequate(trial: Trial) -> bool:
+    """Whether the misfit is small enough for the windows to be tied."""
+    return trial.misfit < ADEQUATE
+
+
+def _correlation(windows: Windows, predicted: np.ndarray) -> float:
+    """Integrated autocorrelation of the residual inside the windows, in samples: 1 for noise, the more the model is wrong."""
+    residual = (predicted - np.asarray(windows.measured)) * np.asarray(windows.weight)
+    energy = float(np.sum(residual**2))
+    length = residual.shape[1]
+    lags = [float(np.sum(residual[:, k:] * residual[:, :-k])) / max(energy, 1e-300) for k in range(1, length // 2)]
+    first = next((k for k, rho in enumerate(lags) if rho <= 0.0), len(lags))
+    return max(1.0, 1.0 + 2.0 * sum(lags[:first]))
+
+
+def width(columns: int) -> int:
+    """The number of columns compiled for this many free parameters."""
+    return -(-columns // COLUMNS) * COLUMNS
+
+
+def _pad(problem: Problem) -> Problem:
+    q = problem.directions.shape[1]
+    extra = width(q) - q
+    return eqx.tree_at(
+        lambda p: (p.directions, p.lower, p.upper, p.shrink),
+        problem,
+        (
+            jnp.pad(problem.directions, ((0, 0), (0, extra))),
+            jnp.pad(problem.lower, (0, extra)),
+            jnp.pad(problem.upper, (0, extra)),
+            jnp.pad(problem.shrink, (0, extra)),
+        ),
+    )
+
