@@ -40,9 +40,9 @@ def frozen(problem: Problem, theta: Any) -> Problem:
     """The same problem with its parameters fixed at ``theta`` (shapes unchanged, so nothing is compiled anew)."""
     q = problem.directions.shape[1]
     return eqx.tree_at(
-        lambda p: (p.base, p.directions, p.shrink),
+        lambda p: (p.base, p.directions, p.shrink, p.active),
         problem,
-        (problem.parameters(theta), jnp.zeros_like(problem.directions), jnp.zeros(q, dtype=bool)),
+        (problem.parameters(theta), jnp.zeros_like(problem.directions), jnp.zeros(q, dtype=bool), jnp.asarray(0)),
     )
 
 

@@ -129,6 +129,7 @@ def make_problem(system: System, windows: Windows, free: Sequence[str], *, tie: 
         jnp.asarray(upper),
         jnp.asarray(shrink),
         jnp.asarray(float(tie)),
+        jnp.asarray(len(free)),
     )
 
 

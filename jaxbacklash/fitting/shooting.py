@@ -42,7 +42,7 @@ class Problem(eqx.Module):
 
     ``base`` (p,) all parameter values; ``directions`` (p, q) how they move with the free ones (column j: scale of free
     parameter j at its place); ``lower``, ``upper`` (q,) bounds in the same units; ``shrink`` (q,) True where a value must
-    keep its sign, so that no step may take it below a third or above three times; ``tie`` overall weight of the ties.
+    keep its sign, so that no step may take it below a third or above three times; ``tie`` overall weight of the ties; ``active`` how many of the q directions are not zero, those first.
     """
 
     windows: Windows
@@ -53,6 +53,7 @@ class Problem(eqx.Module):
     upper: Array
     shrink: Array
     tie: Array
+    active: Array
 
     def parameters(self, theta: Array) -> Array:
         """All parameter values, shape (p,)."""
@@ -177,7 +178,7 @@ def linearise(problem: Problem, unknowns: Unknowns) -> tuple[Blocks, Prediction]
     local = _local(unknowns.coefficients)
     predicted, states, u, du = _predict(problem, unknowns)
     basis, lagged = _input_tangents(problem, unknowns.theta, local)
-    motion_rows, end_rows = rows(w, problem.rebuild, unknowns.theta, states, u, du, basis, lagged)
+    motion_rows, end_rows = rows(w, problem.rebuild, unknowns.theta, problem.active, states, u, du, basis, lagged)
     motion, base, tie = residuals(problem, unknowns, predicted)
     tie_weight = _tie_weight(problem, unknowns)
     weighted = jnp.concatenate([motion_rows * w.weight[:, None, :], end_rows * tie_weight[:, None, :]], axis=2)

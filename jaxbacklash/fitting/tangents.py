@@ -19,6 +19,8 @@ from ..system import System
 from .windows import Windows
 
 Array = Any
+BLOCK = 768
+"""Panels that are differentiated side by side."""
 
 
 def drive(w: Windows, u: Array, du: Array, force: Array) -> Drive:
@@ -40,11 +42,24 @@ def trajectories(w: Windows, system: System, starts: Array, u: Array, du: Array)
 
 
 def panel_matrices(
-    w: Windows, rebuild: Any, theta: Array, states: tuple[Array, ...], u: Array, du: Array
+    w: Windows, rebuild: Any, theta: Array, active: Array, states: tuple[Array, ...], u: Array, du: Array
 ) -> Array:
-    """Derivatives of every panel's end, shape (P, n + 4 + q, n, W): by its start, by u, du at both edges, by theta."""
+    """Derivatives of every panel's end, shape (P, n + 4 + q, n, W): by its start, by u, du at both edges, by theta.
+
+    In blocks of panels that stay in the processor's cache, one direction after the other, those of theta only as far as
+    the first ``active``: three to six times faster than all directions, or all panels, at once.
+    """
     n, q = len(states), theta.shape[0]
-    t = w.t0 + w.panel * jnp.arange(w.force.shape[1] - 1)[:, None]
+    panels, windows = w.force.shape[1] - 1, w.count
+    blocks = -(-panels * windows // BLOCK)
+
+    def lay(values: Array) -> Array:
+        flat = values.T.ravel()
+        return jnp.pad(flat, (0, blocks * BLOCK - flat.size)).reshape(blocks, BLOCK)
+
+    edges = (*states, u[:, :-1], du[:, :-1], u[:, 1:], du[:, 1:])
+    t = w.t0[:, None] + w.panel * jnp.arange(panels)
+    seeds = jnp.eye(n + 4 + q)
 
     def step(own: Any, theta: Array, t: Array, f0: Array, f1: Array) -> Any:
         system = rebuild(theta)
@@ -53,19 +68,25 @@ def panel_matrices(
 
     lanes = jax.vmap(step, in_axes=(0, None, 0, 0, 0))
 
-    def one(at: Any) -> Array:
+    def block(at: Any) -> Any:
         own, t, f0, f1 = at
 
-        def push(e: Array) -> Any:
-            moved = tuple(jnp.broadcast_to(e[i], t.shape) for i in range(n + 4))
-            return jax.jvp(lambda o, th: lanes(o, th, t, f0, f1), (own, theta), (moved, e[n + 4 :]))[1]
+        def push(j: Array, found: Any) -> Any:
+            seed = seeds[j]
+            moved = tuple(jnp.broadcast_to(seed[i], t.shape) for i in range(n + 4))
+            end = jax.jvp(lambda o, th: lanes(o, th, t, f0, f1), (own, theta), (moved, seed[n + 4 :]))[1]
+            return tuple(jax.lax.dynamic_update_slice_in_dim(f, e[None], j, axis=0) for f, e in zip(found, end))
 
-        return jax.vmap(push)(jnp.eye(n + 4 + q))
+        empty = tuple(jnp.zeros((n + 4 + q, BLOCK)) for _ in range(n))
+        return jax.lax.fori_loop(0, n + 4 + active, push, empty)
 
-    own = tuple(v.T for v in (*states, u[:, :-1], du[:, :-1], u[:, 1:], du[:, 1:]))
-    # One panel of all windows at a time: what lies between two steps stays in the processor's cache.
-    found = jax.lax.map(one, (own, t, w.force[:, :-1].T, w.force[:, 1:].T))
-    return jnp.stack(found, axis=2)
+    found = jax.lax.map(block, (tuple(lay(v) for v in edges), lay(t), lay(w.force[:, :-1]), lay(w.force[:, 1:])))
+
+    def unlay(values: Array) -> Array:
+        flat = jnp.swapaxes(values, 0, 1).reshape(n + 4 + q, -1)[:, : panels * windows]
+        return jnp.swapaxes(flat.reshape(n + 4 + q, panels, windows), 0, 1)
+
+    return jnp.stack([unlay(v) for v in found], axis=2)
 
 
 def output_matrices(
@@ -127,7 +148,7 @@ def chain(matrices: Array, basis: Array, lagged: Array | None) -> tuple[Array, A
 
 
 def rows(
-    w: Windows, rebuild: Any, theta: Array, states: tuple[Array, ...], u: Array, du: Array, basis: Array,
+    w: Windows, rebuild: Any, theta: Array, active: Array, states: tuple[Array, ...], u: Array, du: Array, basis: Array,
     lagged: Array | None,
 ) -> tuple[Array, Array]:  # fmt: skip
     """Derivatives of the measured channel at the samples, (W, n + L + q, M), and of the end of every window, (W, n + L + q, n).
@@ -135,7 +156,7 @@ def rows(
     ``states`` (W, P) at panel edges, ``u`` and ``du`` (W, P+1); ``basis`` and ``lagged`` as `chain` takes them.
     """
     n = len(states)
-    along, end = chain(panel_matrices(w, rebuild, theta, states, u, du), basis, lagged)
+    along, end = chain(panel_matrices(w, rebuild, theta, active, states, u, du), basis, lagged)
     at = slice(None, -1, w.every)
     shown = output_matrices(w, rebuild, theta, tuple(s[:, :: w.every] for s in states), u[:, at], du[:, at])
     by_state = along[:: w.every]  # (M, n, n + L + q, W)
