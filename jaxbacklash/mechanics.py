@@ -48,7 +48,9 @@ class Instant:
     Attributes: time ``t`` [s]; absolute motion ``y``, ``dy`` of the link, base motion ``x``, ``dx``, relative motion
     ``z``, ``dz`` [rad, rad/s]; ``deflection`` of the contact beyond the play [rad] and ``contact``, 1 in contact and
     0 in the play (between the two only inside a smoothed corner); the joint's ``stiffness`` [N m/rad], the link's
-    ``inertia`` [kg m^2]; ``state``, the effect's own internal states, in the order of its ``states``.
+    ``inertia`` [kg m^2]; ``state``, the effect's own internal states, in the order of its ``states``; ``slip_z`` and
+    ``slip_y``, the direction (-1, 0, 1) in which joint and link slide where a solver has settled it, None where the sign of
+    the speed must be taken, smoothed.
     """
 
     t: Scalar
@@ -63,6 +65,8 @@ class Instant:
     stiffness: Scalar
     inertia: Scalar
     state: tuple[Scalar, ...] = ()
+    slip_z: Scalar | None = None
+    slip_y: Scalar | None = None
 
     def seen_by(self, state: tuple[Scalar, ...]) -> Instant:
         """The same moment with one effect's internal states filled in."""
@@ -74,13 +78,15 @@ class AbstractEffect(eqx.Module):
 
     Class attributes: ``states`` names of internal states; ``port`` where the torque acts, ``"joint"`` (between link and
     base, so it is part of the transmitted torque) or ``"ground"``; ``family`` a name shared by laws that data often
-    cannot tell apart; ``catalogued`` False keeps a law out of the search for missing effects.
+    cannot tell apart; ``catalogued`` False keeps a law out of the search for missing effects; ``slides`` True for dry
+    friction, whose torque is ``dry`` against the direction of sliding at its port.
     """
 
     states: ClassVar[tuple[str, ...]] = ()
     port: ClassVar[str] = "joint"
     family: ClassVar[str | None] = None
     catalogued: ClassVar[bool] = True
+    slides: ClassVar[bool] = False
 
     @classmethod
     def guesses(cls, system: Any) -> list[AbstractEffect]:
@@ -94,7 +100,11 @@ class AbstractEffect(eqx.Module):
         return [cls(**strengths)]
 
     def torque(self, now: Instant) -> Scalar:
-        """Torque on the link [N m]."""
+        """Torque on the link [N m], dry friction included (in the direction ``now`` knows, else smoothed)."""
+        return jnp.zeros_like(now.y)
+
+    def dry(self, now: Instant) -> Scalar:
+        """Size, >= 0, of the dry friction against the speed seen by the port, at rest the most it can hold [N m]."""
         return jnp.zeros_like(now.y)
 
     def rate(self, now: Instant) -> tuple[Scalar, ...]:

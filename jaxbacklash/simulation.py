@@ -1,7 +1,8 @@
 """Simulate a system under an excitation, through diffrax: one place for steps and tolerances.
 
-Two ways. ``fixed`` steps, located at the edges of the play, are what the fit uses: exact corner, fourth order, cheap.
-``adaptive`` steps with a smoothed corner are the referee: another method, another treatment of the corner.
+Two ways. ``fixed`` steps, located at the edges of the play and where dry friction brings the link to rest, are what the fit
+uses: exact switches, fourth order, cheap. ``adaptive`` steps with smoothed corners and signs are the referee: another
+method, another treatment of the switches.
 """
 
 from __future__ import annotations
@@ -112,7 +113,7 @@ def simulate(
         times, states = _adaptive(args, state, jnp.asarray(1.0 / rate), samples, rtol, atol)
     else:
         every = panels_per_sample or default_panels(system, rate)
-        times, states = _fixed(args, state, jnp.asarray(1.0 / rate), samples - 1, every, system.has_play)
+        times, states = _fixed(args, state, jnp.asarray(1.0 / rate), samples - 1, every, system.switches)
     at = jax.vmap(drive.at)(times)
     observed = jax.vmap(system.output)(times, states, at)
     return Trajectory(times, states, at, observed)

@@ -6,6 +6,7 @@ is a flat tuple ``(y, dy, internal states of the effects in the order of their n
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import equinox as eqx
@@ -52,6 +53,23 @@ class System(eqx.Module):
     def has_play(self) -> bool:
         return isinstance(self.contact, Contact)
 
+    @property
+    def slides(self) -> tuple[str, ...]:
+        """Ports at which dry friction can hold the link, ``"joint"`` before ``"ground"``.
+
+        None where the transmitted torque is observed: that of a joint that sticks is not a function of the state, so the
+        sign of the speed stays smoothed there.
+        """
+        if self.observed == "T":
+            return ()
+        ports = {effect.port for effect in self.effects.values() if effect.slides}
+        return tuple(port for port in ("joint", "ground") if port in ports)
+
+    @property
+    def switches(self) -> bool:
+        """True when steps should be located: there is a play, or dry friction."""
+        return self.has_play or bool(self.slides)
+
     def edges(self, t: Scalar) -> tuple[Scalar, Scalar]:
         """Lower and upper edge of the play at time ``t`` [rad]."""
         play = self._play(t)
@@ -61,9 +79,22 @@ class System(eqx.Module):
         """Time derivative of the state.
 
         ``side`` -1, 0 or 1 says on which side of the play the link is (a located region, sharp corner); without
-        it the region follows from z and the corner is smoothed over ``contact.width``.
+        it the region follows from z and the corner is smoothed over ``contact.width``. Dry friction is smoothed over the
+        ``width`` of its effect; `sliding` leaves it open.
         """
-        now = self.instant(t, state, drive, side)
+        return self._rates(self.instant(t, state, drive, side), state, drive)
+
+    def sliding(self, t: Scalar, state: State, drive: Drive, side: Scalar | None) -> tuple[State, tuple[Scalar, Scalar]]:
+        """`rates` without dry friction, and the acceleration that it can take from the link at joint and ground."""
+        now = replace(self.instant(t, state, drive, side), slip_z=0.0, slip_y=0.0)
+        capacity: dict[str, Any] = {"joint": jnp.zeros_like(now.y), "ground": jnp.zeros_like(now.y)}
+        for name, own in self._own_states(state):
+            effect = self.effects[name]
+            if effect.slides:
+                capacity[effect.port] = capacity[effect.port] + effect.dry(now.seen_by(own)) / self.inertia
+        return self._rates(now, state, drive), (capacity["joint"], capacity["ground"])
+
+    def _rates(self, now: Instant, state: State, drive: Drive) -> State:
         torque, _ = self.torques(now, state)
         hidden = tuple(
             r for name, own in self._own_states(state) for r in self.effects[name].rate(now.seen_by(own))

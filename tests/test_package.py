@@ -18,8 +18,9 @@ REGISTRIES = (("pypi", "org"), ("pythonhosted", "org"), ("anaconda", "org"))
 PROSE = {".py", ".md", ".toml", ".j2", ".css", ".js", ".sh", ""}
 
 EFFECTS = {
-    "asymmetric_gap", "coulomb_ground", "coulomb_joint", "cubic_stiffness", "dahl", "flexible_link", "gap_spring",
-    "gravity", "preload", "sensor_delay", "sensor_gain", "sensor_offset",
+    "asymmetric_gap", "asymmetric_stiffness", "bouc_wen", "contact_damping", "coulomb_ground", "coulomb_joint",
+    "cubic_stiffness", "dahl", "flexible_link", "gap_drift", "gap_spring", "gravity", "hunt_crossley", "lugre", "preload",
+    "quadratic_drag", "sensor_delay", "sensor_gain", "sensor_offset", "stiffness_drift", "stribeck", "torque_ripple",
 }  # fmt: skip
 
 

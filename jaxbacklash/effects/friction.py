@@ -1,8 +1,13 @@
-"""Dry friction. The sign function is regularised over a stated speed, its ``width``."""
+"""Dry friction: set-valued at rest, a jump with the sign of the speed in motion.
+
+Runs with located steps (`simulate`, the fit) take the jump as it is: steps end where the speed is zero, and there the link
+sticks until the torque that would hold it exceeds what friction can give. Where a bare moment is all that is known, and
+for the adaptive referee, the sign is spread over a stated speed, the effect's ``width``.
+"""
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import jax.numpy as jnp
 
@@ -20,46 +25,60 @@ def smooth_sign(v: Scalar, width: Scalar) -> Scalar:
     return s * (1.5 - 0.5 * s * s)
 
 
+def direction(speed: Scalar, known: Scalar | None, width: Scalar) -> Scalar:
+    """Direction of sliding, -1 to 1: the known one, else the smoothed sign of the speed [rad/s] over ``width``."""
+    return smooth_sign(speed, width) if known is None else known
+
+
 class CoulombJoint(AbstractEffect):
-    r"""Dry friction in the joint, :math:`T = -T_c\,\mathrm{sgn}(\dot z)`."""
+    r"""Dry friction in the joint, :math:`T = -T_c\,\mathrm{sgn}(\dot z)`; at rest it holds any torque up to :math:`T_c`."""
 
     Tc: Scalar = param(unit="N m", null=0.0, lower=0.0, scale=1.0)
     width: Scalar = param(unit="rad/s", default=1e-3, lower=0.0, fixed=True, label="regularisation of the sign")
+    slides: ClassVar[bool] = True
+
+    def dry(self, now: Instant) -> Scalar:
+        return self.Tc * jnp.ones_like(now.dz)
 
     def torque(self, now: Instant) -> Scalar:
-        return -self.Tc * smooth_sign(now.dz, self.width)
+        return -self.dry(now) * direction(now.dz, now.slip_z, self.width)
 
 
 class CoulombGround(AbstractEffect):
-    r"""Dry friction between link and ground, :math:`T = -T_c\,\mathrm{sgn}(\dot y)`."""
+    r"""Dry friction between link and ground, :math:`T = -T_c\,\mathrm{sgn}(\dot y)`; at rest it holds up to :math:`T_c`."""
 
     Tc: Scalar = param(unit="N m", null=0.0, lower=0.0, scale=1.0)
     width: Scalar = param(unit="rad/s", default=1e-3, lower=0.0, fixed=True, label="regularisation of the sign")
     port: ClassVar[str] = "ground"
+    slides: ClassVar[bool] = True
+
+    def dry(self, now: Instant) -> Scalar:
+        return self.Tc * jnp.ones_like(now.dy)
 
     def torque(self, now: Instant) -> Scalar:
-        return -self.Tc * smooth_sign(now.dy, self.width)
+        return -self.dry(now) * direction(now.dy, now.slip_y, self.width)
 
 
-class Dahl(AbstractEffect):
-    r"""Presliding hysteresis, :math:`T = -s,\ \dot s = \sigma \dot z (1 - (s/F_c)\,\mathrm{sgn}\,\dot z)` (Dahl, 1968).
+class Stribeck(AbstractEffect):
+    r"""Dry friction that falls with speed, :math:`T = -(T_c + (T_s - T_c) e^{-(\dot z / v_s)^2})\,\mathrm{sgn}(\dot z)`.
 
-    Written with :math:`|\dot z|`, :math:`\dot s = \sigma(\dot z - |\dot z| s / F_c)`, which needs no regularised sign.
+    :math:`T_s` holds at rest, :math:`T_c` remains in fast sliding (Stribeck's curve in the form of Armstrong-Helouvry,
+    1991). It vanishes where both are zero; with :math:`T_s = T_c` it is Coulomb friction and the speed :math:`v_s` is open.
     """
 
-    Fc: Scalar = param(unit="N m", null=0.0, lower=0.0, scale=1.0)
-    sigma: Scalar = param(unit="N m/rad", default=1000.0, lower=0.0, scale=1000.0)
-    states: ClassVar[tuple[str, ...]] = ("s",)
-    family: ClassVar[str | None] = "hysteresis"
+    Tc: Scalar = param(unit="N m", null=0.0, lower=0.0, scale=1.0)
+    Ts: Scalar = param(unit="N m", null=0.0, lower=0.0, scale=1.0)
+    vs: Scalar = param(unit="rad/s", default=0.1, lower=1e-3, scale=0.1)
+    width: Scalar = param(unit="rad/s", default=1e-3, lower=0.0, fixed=True, label="regularisation of the sign")
+    slides: ClassVar[bool] = True
+    family: ClassVar[str | None] = "dry friction"
+
+    @classmethod
+    def guesses(cls, system: Any) -> list[AbstractEffect]:
+        return [cls(1.0, 2.0, vs) for vs in (0.1, 0.03, 0.3)]
+
+    def dry(self, now: Instant) -> Scalar:
+        return self.Tc + (self.Ts - self.Tc) * jnp.exp(-((now.dz / jnp.maximum(self.vs, 1e-6)) ** 2))
 
     def torque(self, now: Instant) -> Scalar:
-        # The state is the fraction s / Fc, so that the law is linear in Fc and regular at its null value.
-        return -self.Fc * now.state[0]
-
-    def rate(self, now: Instant) -> tuple[Scalar, ...]:
-        (s,) = now.state
-        stiffness = self.sigma / jnp.maximum(self.Fc, 1e-9 * self.sigma)
-        return (stiffness * (now.dz - jnp.abs(now.dz) * s),)
-
-    def start(self, now: Instant) -> tuple[Scalar, ...]:
-        return (jnp.clip(10.0 * now.dz, -1.0, 1.0),)
+        return -self.dry(now) * direction(now.dz, now.slip_z, self.width)

@@ -1,10 +1,11 @@
-"""Loads on the link that do not come from the joint's contact: weight, a constant torque."""
+"""Loads on the link that do not come from the joint's contact: weight, a constant torque, a drive's ripple."""
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import jax.numpy as jnp
+import numpy as np
 
 from ..mechanics import AbstractEffect, Instant
 from ..parameters import Scalar, param
@@ -39,3 +40,24 @@ class Preload(AbstractEffect):
 
     def torque(self, now: Instant) -> Scalar:
         return self.T0 * jnp.ones_like(now.y)
+
+
+class TorqueRipple(AbstractEffect):
+    r"""Ripple of a drive, :math:`T = A \sin(N y + \varphi)`: cogging, or the teeth of a harmonic drive.
+
+    The order N is at least 4: below that the ripple cannot be told from gravity. A and :math:`\varphi` are one amplitude
+    with either sign and a phase.
+    """
+
+    A: Scalar = param(unit="N m", null=0.0, scale=1.0)
+    N: Scalar = param(unit="1", default=20.0, lower=4.0, scale=1.0)
+    phi: Scalar = param(unit="rad", default=0.0, scale=0.1)
+    port: ClassVar[str] = "ground"
+
+    @classmethod
+    def guesses(cls, system: Any) -> list[AbstractEffect]:
+        # A link that swings by a tenth of a radian tells orders some fifteen apart; a phase is a sum of two.
+        return [cls(1.0, order, phase) for order in (20.0, 35.0, 50.0, 65.0, 80.0, 100.0, 8.0) for phase in (0.0, 0.5 * np.pi)]
+
+    def torque(self, now: Instant) -> Scalar:
+        return self.A * jnp.sin(self.N * now.y + self.phi)

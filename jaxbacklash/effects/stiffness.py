@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import jax.numpy as jnp
+
 from ..mechanics import AbstractEffect, Instant, Play
 from ..parameters import Scalar, param
 
@@ -13,6 +15,15 @@ class CubicStiffness(AbstractEffect):
 
     def torque(self, now: Instant) -> Scalar:
         return -self.k3 * now.deflection**3
+
+
+class AsymmetricStiffness(AbstractEffect):
+    r"""Contact stiffness :math:`k(1+a)` above the play and :math:`k(1-a)` below: :math:`T = -a k |\delta|` beside the spring."""
+
+    a: Scalar = param(unit="1", null=0.0, lower=-1.0, upper=1.0, scale=0.01)
+
+    def torque(self, now: Instant) -> Scalar:
+        return -self.a * (now.stiffness * jnp.abs(now.deflection))
 
 
 class GapSpring(AbstractEffect):

@@ -90,6 +90,9 @@ def estimate(
         low, high = grid[max(k - 1, 0)], grid[min(k + 1, grid.size - 1)]
         half = float(optimize.minimize_scalar(lambda h: solve(h)[0], bounds=(low, high), method="bounded").x)
     misfit, solution = solve(half)
+    if spring:  # strengths relative to the contact stiffness need it to be known
+        weak.stiffness = max(float(solution[1]), 1e-9)
+        misfit, solution = solve(half)
     rest = iter(solution[2 if spring else 1 :])
     found = inertia if inertia is not None else max(float(next(rest)), 1e-9)
     stiffness = max(float(solution[1]), 1e-6 * found) if spring else None
@@ -151,6 +154,7 @@ class _WeakForm:
         self.z = channels["z"] if "z" in channels else channels["y"] - x
         y = channels["y"] if "y" in channels else self.z + x
         self._record, self._x, self._y = record, x, y
+        self.stiffness = 1.0
         self._speeds: tuple[np.ndarray, np.ndarray] | None = None
         self.acceleration = self._against(self._bump2, y)
         self.force = self._against(self._bump, channels.get("F", zero))
@@ -168,7 +172,7 @@ class _WeakForm:
         contact = (np.abs(self.z) > half_play).astype(float)
         one = jnp.ones(())
         now = Instant(
-            self._record.t, self._y, dy, self._x, dx, self.z, dy - dx, deflection, contact, one, one
+            self._record.t, self._y, dy, self._x, dx, self.z, dy - dx, deflection, contact, self.stiffness * one, one
         )
         return self.integrate(np.asarray(effect.torque(now)) * np.ones_like(self.z))
 

@@ -61,7 +61,10 @@ def base_system(
 
 
 def _sharpen(system: System, record: Record) -> System:
-    """Regularise the sign of a speed over less than half a percent of the speeds in the record, where that is sharper."""
+    """Regularise the sign of a speed over less than half a percent of the speeds in the record, where that is sharper.
+
+    For the regression and the referee; the fit's located steps have no width.
+    """
     moved = record.channels[record.observed_name]
     lag = max(1, round(0.01 / record.dt))
     speed = float(np.sqrt(np.mean((moved[lag:] - moved[:-lag]) ** 2))) / (lag * record.dt)

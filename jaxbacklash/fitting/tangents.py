@@ -35,7 +35,7 @@ def trajectories(w: Windows, system: System, starts: Array, u: Array, du: Array)
 
     def one(start: Array, t0: Array, u: Array, du: Array, force: Array) -> Any:
         state = tuple(start[i] for i in range(starts.shape[0]))
-        return run_panels(system, t0, state, drive(w, u, du, force), w.panel, 1, system.has_play)
+        return run_panels(system, t0, state, drive(w, u, du, force), w.panel, 1, system.switches)
 
     end, states = jax.vmap(one, in_axes=(1, 0, 0, 0, 0))(starts, w.t0, u, du, w.force)
     return jnp.stack(end), states
@@ -64,7 +64,7 @@ def panel_matrices(
     def step(own: Any, theta: Array, t: Array, f0: Array, f1: Array) -> Any:
         system = rebuild(theta)
         a, b = drive(w, own[n], own[n + 1], f0), drive(w, own[n + 2], own[n + 3], f1)
-        return one_panel(system, t, own[:n], a, b, w.panel, system.has_play)
+        return one_panel(system, t, own[:n], a, b, w.panel, system.switches)
 
     lanes = jax.vmap(step, in_axes=(0, None, 0, 0, 0))
 

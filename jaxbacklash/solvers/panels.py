@@ -47,6 +47,10 @@ class Cubic(NamedTuple):
     def slope(self, tau: Scalar) -> Scalar:
         return self.b + tau * (2.0 * self.c + 3.0 * tau * self.d)
 
+    def bend(self, tau: Scalar) -> Scalar:
+        """The second derivative."""
+        return 2.0 * self.c + 6.0 * tau * self.d
+
 
 class Switching(Protocol):
     """What a panel needs of a system: its rates in a known region, and where the regions end."""

@@ -15,6 +15,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
+from .dry import advance_dry
 from .panels import Cubic, advance, advance_smooth
 
 
@@ -54,7 +55,7 @@ class PanelInterpolation(diffrax.AbstractLocalInterpolation):
 
 
 class PanelRK4(diffrax.AbstractSolver):
-    """Fourth-order Runge-Kutta over ``panels`` panels in one step, located at the edges of the play when ``located``.
+    """Fourth-order Runge-Kutta over ``panels`` panels in one step, split at its events when ``located``.
 
     ``keep`` states are handed out per step, evenly spaced, besides the first; it divides ``panels``.
     """
@@ -92,6 +93,8 @@ def one_panel(system: Any, t: Any, state: Any, a: Any, b: Any, h: Any, located: 
     def drive_at(tau: Any) -> Any:
         return type(a)(base.at(tau), base.slope(tau), force.at(tau))
 
+    if located and system.slides:
+        return advance_dry(system, t, state, drive_at, base, h)
     if located:
         return advance(system, t, state, drive_at, base, h)
     return advance_smooth(system, t, state, drive_at, h)
@@ -110,7 +113,7 @@ def run_panels(
     edges : the drive at all ``P + 1`` panel edges, arrays with the panels on the leading axis
     h : length of a panel [s]
     every : panels between kept states; divides P
-    located : split panels where the link meets an edge of the play
+    located : split panels where the link meets an edge of the play or comes to rest in dry friction
 
     Returns
     -------

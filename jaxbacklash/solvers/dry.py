@@ -1,0 +1,204 @@
+r"""A panel of a system with dry friction: the link slides, comes to rest, sticks and breaks away.
+
+At rest friction is set-valued: the link sticks to what it rubs on while the torque that holds it lies within friction's
+capacity, and moves with it exactly. In motion friction is a torque against the speed. As in `panels.advance` a panel is two
+Runge-Kutta steps, each with its direction of sliding decided where it begins. They meet at the first event ahead: an edge
+of the play, or a speed that comes to zero. What the prediction misses is put right afterwards: a step that went on for
+:math:`\epsilon` after the speed had turned gets the change of acceleration times :math:`\epsilon` at its end, and a link
+that should have broken away the speed it would have by then. The correction carries the event's derivative as well, and it
+serves where a panel has more events than one.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Protocol
+
+import jax
+import jax.numpy as jnp
+
+from .panels import Cubic, Scalar, State, _add, _first_crossing, _side
+
+SOON = 1e-4
+"""Share of a panel within which an event counts as met: a fraction of a microsecond."""
+STILL = 1e-9
+"""Speed that counts as rest [rad/s]."""
+
+
+class Sliding(Protocol):
+    """What a panel needs of a system with dry friction at some of the ports ``slides``, ``"joint"`` and ``"ground"``."""
+
+    @property
+    def slides(self) -> tuple[str, ...]: ...
+
+    @property
+    def has_play(self) -> bool: ...
+
+    def edges(self, t: Scalar) -> tuple[Scalar, Scalar]: ...
+
+    def sliding(self, t: Scalar, state: State, drive: Any, side: Scalar | None) -> tuple[State, tuple[Scalar, Scalar]]: ...
+
+
+class Moment(NamedTuple):
+    """Accelerations [rad/s^2] at one moment: of the link without dry friction, what friction can take from it at joint and
+    ground, and of the base."""
+
+    free: Scalar
+    joint: Scalar
+    ground: Scalar
+    base: Scalar
+
+
+class Mode(NamedTuple):
+    """How the link moves on: direction of sliding at joint and ground (0 where it sticks), and whether it sticks there."""
+
+    slip_z: Scalar
+    slip_y: Scalar
+    held_z: Scalar
+    held_y: Scalar
+
+    def acceleration(self, now: Moment) -> Scalar:
+        """Acceleration of the link [rad/s^2]."""
+        moving = now.free - now.joint * self.slip_z - now.ground * self.slip_y
+        return jnp.where(self.held_z, now.base, jnp.where(self.held_y, 0.0, moving))
+
+    def held(self, now: Moment) -> tuple[Scalar, Scalar]:
+        """What friction has to hold where the link sticks, and the most that it can [rad/s^2]."""
+        at_joint, at_ground = now.free - now.base - now.ground * self.slip_y, now.free - now.joint * self.slip_z
+        return jnp.where(self.held_z, at_joint, at_ground), jnp.where(self.held_z, now.joint, now.ground)
+
+
+def _mode(slides: tuple[str, ...], now: Moment, dz: Scalar, dy: Scalar, met: tuple[Any, Any], soon: Scalar) -> Mode:
+    """The mode in which a link of these speeds goes on, the joint first where both could hold; ``met`` speeds count as zero."""
+    no = jnp.zeros_like(dz, dtype=bool)
+    slip_z, slip_y = jnp.sign(dz), jnp.sign(dy)
+    still_y = held_z = held_y = no
+    if "ground" in slides:
+        still_y = met[1] | (jnp.abs(dy) <= STILL + soon * jnp.abs(now.free - now.joint * slip_z - now.ground * slip_y))
+        slip_y = jnp.where(still_y, jnp.sign(now.base), slip_y)  # where it would be carried
+    if "joint" in slides:
+        pull = now.free - now.base - now.ground * slip_y
+        still_z = met[0] | (jnp.abs(dz) <= STILL + soon * jnp.abs(pull - now.joint * slip_z))
+        held_z = still_z & (now.joint > 0.0) & (jnp.abs(pull) <= now.joint)
+        slip_z = jnp.where(held_z, 0.0, jnp.where(still_z, jnp.sign(pull), slip_z))
+    if "ground" in slides:
+        pull = now.free - now.joint * slip_z
+        held_y = still_y & ~held_z & (now.ground > 0.0) & (jnp.abs(pull) <= now.ground)
+        slip_y = jnp.where(held_y, 0.0, jnp.where(still_y & ~held_z, jnp.sign(pull), slip_y))
+    return Mode(slip_z, slip_y, held_z, held_y)
+
+
+def _turned(speed: Scalar, slip: Scalar, before: Scalar, pull: Scalar, capacity: Scalar, met: Any) -> tuple[Scalar, Scalar]:
+    """What to add to speed and position at the end of a step whose speed came to zero, at ``met`` or unforeseen.
+
+    ``before`` and ``pull`` are the accelerations relative to what the link rubs on, with and without this friction.
+    """
+    turned = (met | (speed * slip < 0.0)) & (before * slip < 0.0)
+    since = jnp.where(turned, speed / jnp.where(turned, before, 1.0), 0.0)
+    after = jnp.where(jnp.abs(pull) <= capacity, 0.0, pull + capacity * slip)
+    gain = (after - before) * since
+    return gain, 0.5 * gain * since
+
+
+def advance_dry(system: Sliding, t: Scalar, state: State, drive_at: Any, base: Cubic, h: Scalar) -> State:
+    """Advance the state over one panel; the arguments are those of `panels.advance`."""
+    low, high = system.edges(t) if system.has_play else (0.0, 0.0)
+    soon = SOON * h
+    # On a base at rest both frictions oppose one speed and are one.
+    resting = (base.b == 0.0) & (base.c == 0.0) & (base.d == 0.0)
+
+    def see(at: Scalar, state: State, side: Scalar | None) -> tuple[State, Moment]:
+        rates, (joint, ground) = system.sliding(t + at, state, drive_at(at), side)
+        if len(system.slides) == 2:
+            joint, ground = jnp.where(resting, joint + ground, joint), jnp.where(resting, 0.0, ground)
+        return rates, Moment(rates[1], joint, ground, base.bend(at))
+
+    def region(z: Scalar) -> Any:
+        return _side(z, low, high) if system.has_play else None
+
+    def piece(carry: Any, last: Any) -> Any:
+        state, begin, met, side = carry
+        rest = h - begin
+        z, dz = state[0] - base.at(begin), state[1] - base.slope(begin)
+        first, start = see(begin, state, side)
+        mode = _mode(system.slides, start, dz, state[1], met, soon)
+        dy = jnp.where(mode.held_z, base.slope(begin), jnp.where(mode.held_y, 0.0, state[1]))
+        dz = dy - base.slope(begin)
+        state = (state[0], dy, *state[2:])
+        acceleration = mode.acceleration(start)
+        event, met = _first_event(system, (z, low, high), (dz, dy), (acceleration - start.base, acceleration), rest, soon)
+        step, met = jnp.where(last, rest, event), tuple(m & ~last for m in met)
+        if side is not None:
+            half = 0.5 * step
+            side = jnp.where(last, side, region(z + half * (dz + 0.5 * half * (acceleration - start.base))))
+
+        k1 = (dy, acceleration, *first[2:])
+        slopes, end = [k1], start
+        for share in (0.5, 0.5, 1.0):
+            at = _add(state, slopes[-1], share * step)
+            rates, end = see(begin + share * step, at, side)
+            slopes.append((at[1], mode.acceleration(end), *rates[2:]))
+        state = tuple(s + (step / 6.0) * (a + 2.0 * (b + c) + d) for s, a, b, c, d in zip(state, *slopes))
+        begin = begin + step
+        state = _put_right(system.slides, state, mode, (start, end), base.slope(begin), step, met)
+        half = 0.5 * (h - begin)
+        z, dz = state[0] - base.at(begin), state[1] - base.slope(begin)
+        side = region(z + half * (dz + 0.5 * half * (mode.acceleration(end) - end.base)))
+        return (state, begin, met, side), None
+
+    no = jnp.zeros_like(state[0], dtype=bool)
+    # A loop, not two copies: with many laws in the system the compiler makes ten times the work of the copies' derivative.
+    begun: Any = (state, jnp.zeros_like(state[0]), (no, no), region(state[0] - base.a))
+    (state, *_), _ = jax.lax.scan(piece, begun, jnp.array([False, True]))
+    return state
+
+
+def _first_event(
+    system: Sliding, place: tuple[Scalar, Scalar, Scalar], speeds: tuple[Scalar, Scalar], accelerations: tuple[Scalar, Scalar],
+    rest: Scalar, soon: Scalar,
+) -> tuple[Scalar, tuple[Scalar, Scalar]]:  # fmt: skip
+    """Time to the first event ahead, or half of what is left, and whether it is that the joint's or the link's speed is zero."""
+
+    def stop(speed: Scalar, acceleration: Scalar) -> Scalar:
+        slowing = speed * acceleration < 0.0
+        time = -speed / jnp.where(slowing, acceleration, 1.0)
+        return jnp.where(slowing & (time > soon) & (time < rest), time, rest)
+
+    z, low, high = place
+    edge, stop_z, stop_y = rest, rest, rest
+    if system.has_play:
+        ahead = (speeds[0], accelerations[0], rest)
+        edge = jnp.minimum(_first_crossing(z - low, *ahead), _first_crossing(z - high, *ahead))
+    if "joint" in system.slides:
+        stop_z = stop(speeds[0], accelerations[0])
+    if "ground" in system.slides:
+        stop_y = stop(speeds[1], accelerations[1])
+    event = jnp.minimum(edge, jnp.minimum(stop_z, stop_y))
+    found = event < rest
+    return jnp.where(found, event, 0.5 * rest), (found & (stop_z <= event), found & (stop_y <= event))
+
+
+def _put_right(
+    slides: tuple[str, ...], state: State, mode: Mode, moments: tuple[Moment, Moment], dx: Scalar, step: Scalar,
+    met: tuple[Scalar, Scalar],
+) -> State:  # fmt: skip
+    """The state at the end of a step as it would be had the step ended where its mode did."""
+    y, dy = state[0], state[1]
+    start, end = moments
+    acceleration = mode.acceleration(end)
+    held, most = mode.held(end)
+    held0, most0 = mode.held(start)
+    # A link that sticks breaks away where its hold runs out, on a straight line from start to end.
+    lack, spare = jnp.abs(held) - most, most0 - jnp.abs(held0)
+    broke = (mode.held_z | mode.held_y) & (lack > 0.0)
+    since = jnp.where(broke, step * lack / jnp.where(broke, lack + jnp.maximum(spare, 0.0), 1.0), 0.0)
+    gain = jnp.sign(held) * lack * since / 2.0
+    y, dy = y + gain * since / 3.0, dy + gain
+    if "joint" in slides:
+        pull = end.free - end.base - end.ground * mode.slip_y
+        gain, shift = _turned(dy - dx, mode.slip_z, acceleration - end.base, pull, end.joint, met[0])
+        y, dy = y + shift, dy + gain
+    if "ground" in slides:
+        slip = jnp.where(mode.held_z, 0.0, mode.slip_y)
+        gain, shift = _turned(dy, slip, acceleration, end.free - end.joint * mode.slip_z, end.ground, met[1])
+        y, dy = y + shift, dy + gain
+    return (y, dy, *state[2:])
