@@ -3,6 +3,12 @@
 Importing this package changes nothing global. The fits need double precision: call `enable_double_precision` first.
 """
 
+from .criticism import Findings as Findings
+from .criticism import Latent as Latent
+from .criticism import Surface as Surface
+from .criticism import explain_torque as explain_torque
+from .criticism import missing_torque as missing_torque
+from .criticism import where_it_fails as where_it_fails
 from .effects import AsymmetricGap as AsymmetricGap
 from .effects import Contact as Contact
 from .effects import CoulombGround as CoulombGround
@@ -13,6 +19,7 @@ from .effects import Damper as Damper
 from .effects import FlexibleLink as FlexibleLink
 from .effects import GapSpring as GapSpring
 from .effects import Gravity as Gravity
+from .effects import LearnedTorque as LearnedTorque
 from .effects import LinearGravity as LinearGravity
 from .effects import Preload as Preload
 from .effects import Spring as Spring

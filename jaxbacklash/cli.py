@@ -104,6 +104,36 @@ def compare(
     )  # fmt: skip
 
 
+@app.command(epilog="Example: jaxbacklash diagnose run1.csv --inertia 3.16 --out why1")
+def diagnose(
+    record: Annotated[Path, typer.Argument(help="A record: CSV, npz or mat")],
+    inertia: Inertia = None,
+    model: Annotated[str, typer.Option("--model", help="joint, linear, free, or a model file FILE.toml to start from")] = "joint",
+    effects: Annotated[str | None, typer.Option("--effects", help="Effects the model has already: gravity,coulomb_joint")] = None,
+    laws: Laws = None,
+    out: Out = None,
+    json: Json = False,
+    columns: Columns = None,
+    unit: Unit = None,
+    scale: Scale = None,
+    resample: Resample = False,
+    resample_rate: ResampleRate = None,
+    window: Window = 0.2,
+    starts: Annotated[int, typer.Option("--starts", help="How many starting points are tried")] = 4,
+    translation: Translation = False,
+    seed: Seed = 0,
+) -> None:
+    """Fit a model, say where it fails, and show the torque it misses and what that depends on."""
+    from .commands import diagnose as command
+    from .commands.common import load_laws
+
+    load_laws(laws)
+    command.run(
+        record, inertia=inertia, model=model, effects=effects, out=out, as_json=json, columns=columns, unit=unit, scale=scale,
+        resample=resample_rate or resample, window=window, starts=starts, translational=translation, seed=seed,
+    )  # fmt: skip
+
+
 @app.command(
     epilog="Example: jaxbacklash simulate fit1/model.toml --excitation chirp:amplitude=0.07,f0=0,f1=12 --out sim.csv"
 )

@@ -35,7 +35,9 @@ def dump_model(system: System, *, translational: bool = False, per_inertia: bool
     for name in sorted(system.effects):
         effect = system.effects[name]
         lines += ["", f"[effects.{name}]"]
-        lines += [entry(f.name, getattr(effect, f.name), f.metadata["spec"].unit) for f in fields(effect)]
+        for f in fields(effect):
+            value, spec = getattr(effect, f.name), f.metadata.get("spec")
+            lines.append(f"{f.name} = {_literal(value)}" if spec is None else entry(f.name, value, spec.unit))
     return "\n".join(lines) + "\n"
 
 
@@ -101,12 +103,16 @@ def _effect(name: str, entries: Any, where: str) -> AbstractEffect:
         raise BadInput(f"{where}: [effects.{name}] is not an effect, wanted one of {', '.join(known)}")
     cls = known[name]
     described = {f.name: f for f in fields(cls) if "spec" in f.metadata}
-    unknown = sorted(set(entries) - set(described))
+    settings = [f.name for f in fields(cls) if f.metadata.get("static", False)]
+    unknown = sorted(set(entries) - set(described) - set(settings))
     if unknown:
-        raise BadInput(f"{where}: [effects.{name}] has an entry {unknown[0]}, wanted {', '.join(described)}")
-    numbers = {key: _value(value, f"{where}: [effects.{name}] {key}") for key, value in entries.items()}
+        raise BadInput(f"{where}: [effects.{name}] has an entry {unknown[0]}, wanted {', '.join([*described, *settings])}")
+    numbers = {key: _value(value, f"{where}: [effects.{name}] {key}") for key, value in entries.items() if key in described}
+    others = {key: _setting(value, f"{where}: [effects.{name}] {key}") for key, value in entries.items() if key in settings}
     try:
-        effect = cls(**numbers)
+        effect = cls(**numbers, **others)
+    except ValueError as error:
+        raise BadInput(f"{where}: [effects.{name}]: {error}") from None
     except TypeError:
         missing = sorted(set(described) - set(entries))
         raise BadInput(f"{where}: [effects.{name}] lacks {missing[0]}, wanted {', '.join(described)}") from None
@@ -122,6 +128,19 @@ def _value(value: Any, where: str) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
         raise BadInput(f"{where} is {value!r}, wanted a finite number")
     return float(value)
+
+
+def _setting(value: Any, where: str) -> Any:
+    """Text, a number, or rows of them, as what a law holds beside its parameters."""
+    if isinstance(value, list):
+        return tuple(_setting(part, where) for part in value)
+    return value if isinstance(value, str) else _value(value, where)
+
+
+def _literal(value: Any) -> str:
+    if isinstance(value, tuple):
+        return "[" + ", ".join(_literal(part) for part in value) + "]"
+    return f'"{value}"' if isinstance(value, str) else _number(value)
 
 
 def _number(value: Any) -> str:

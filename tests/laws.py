@@ -14,6 +14,7 @@ from jaxbacklash.effects import (
     GapSpring,
     Gravity,
     HuntCrossley,
+    LearnedTorque,
     LinearGravity,
     Lugre,
     Preload,
@@ -38,6 +39,9 @@ LAWS = {
     "gap_spring": GapSpring(300.0, 0.001),
     "gravity": Gravity(-28.0),
     "hunt_crossley": HuntCrossley(2000.0),
+    "learned_torque": LearnedTorque(
+        ("side", "dz"), ((-1.0, 0.0, 1.0), (-2.0, 0.1, 2.0)), (9.0, 0.5, -8.0, 1.0, 0.0, 1.0, 7.0, 0.0, -9.0)
+    ),
     "linear_gravity": LinearGravity(-28.0),
     "lugre": Lugre(3000.0, 2.0, 0.0, 4.0, 6.0, 0.1),
     "preload": Preload(5.0),

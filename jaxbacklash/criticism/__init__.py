@@ -1,1 +1,13 @@
-r"""Where a model fails, which effect is missing, and the loop that adds it."""
+"""Where a model fails, the torque it misses, which effect that is, and the loop that adds it."""
+
+from .failures import Dependence as Dependence
+from .latent import Latent as Latent
+from .latent import missing_torque as missing_torque
+from .latent import missing_torque_of as missing_torque_of
+from .refine import Refinement as Refinement
+from .refine import Stage as Stage
+from .refine import refine as refine
+from .residuals import Findings as Findings
+from .residuals import where_it_fails as where_it_fails
+from .surface import Surface as Surface
+from .surface import explain_torque as explain_torque

@@ -1,8 +1,9 @@
 r"""Which absent effects would lower the misfit: a score test of all of them at their null values, from one set of sensitivities.
 
 With the information S and the score g of all columns, the joint's and the candidate's, windows marginalised, adding the
-candidate is predicted to lower twice the cost by :math:`g^T S^{-1} g` more than the joint alone would. Parameters that shape a
-law but do not act at its null value are scanned over the law's own guesses; strengths that physics bounds on one side count on that side only.
+candidate is predicted to lower twice the cost by :math:`g^T S^{-1} g` more than the joint alone would. Parameters that
+shape a law but do not act at its null value are scanned over the law's own guesses; strengths that physics bounds on one
+side count on that side only.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ from .workbench import Trial, Workbench, strengths, width
 
 @dataclass(frozen=True)
 class Candidate:
-    """An absent effect: ``effect`` at its predicted values, ``gain`` the predicted fall of twice the cost, ``predicted`` the misfit
-    after adding it in units of the noise, ``moved`` predicted values of the joint's free parameters."""
+    """An absent effect: ``effect`` at its predicted values, ``gain`` the predicted fall of twice the cost, ``predicted`` the
+    misfit after adding it in units of the noise, ``moved`` predicted values of the model's free parameters."""
 
     name: str
     effect: AbstractEffect
@@ -72,7 +73,7 @@ def _groups(bench: Workbench, trial: Trial, shapes: dict[str, AbstractEffect]) -
 
 def _score(bench: Workbench, trial: Trial, shapes: dict[str, AbstractEffect], group: list[str]) -> list[Candidate]:
     columns = [(name, n) for name in group for n in strengths(shapes[name])]
-    problem, free = bench.problem(
+    problem, _ = bench.problem(
         bench.effects(trial), trial.system, extra=[f"{name}.{n}" for name, n in columns], shapes=shapes
     )
     problem = eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(TIES[0][-1] if trial.tied else 0.0))

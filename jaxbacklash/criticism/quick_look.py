@@ -70,7 +70,8 @@ class QuickLook:
         self._stride = max(1, reach // 4)
         zero = np.zeros(record.samples)
         raw = record.channels[record.observed_name]
-        self._acceleration = self._average(raw + (record.channels.get("x", zero) if record.observed_name == "z" else 0.0), self._bump2)
+        base = record.channels.get("x", zero) if record.observed_name == "z" else zero
+        self._acceleration = self._average(raw + base, self._bump2)
 
     def missing(self, system: System, free: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
         """Missing torque under the bump (R,), and how it falls with each free parameter of the model (R, q)."""
@@ -91,7 +92,9 @@ class QuickLook:
         m = self.motion
         return self.average(np.asarray(_own_torque(effect, system, m.t, m.y, m.dy, m.x, m.dx)))
 
-    def choose(self, system: System, free: tuple[str, ...], variants: list[AbstractEffect], keep: int = 1) -> list[AbstractEffect]:
+    def choose(
+        self, system: System, free: tuple[str, ...], variants: list[AbstractEffect], keep: int = 1
+    ) -> list[AbstractEffect]:
         """The likeliest of several shapes of a law beside a fitted model, the best first.
 
         Parameters

@@ -5,12 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
 from ..errors import BadInput
+from ..fitting.equation_error import Start
 from ..fitting.estimates import judge
 from ..fitting.fit import SCORE_WINDOW, TIES, Fit, prepare, silent
 from ..fitting.score import Score, score
@@ -42,8 +44,8 @@ class Stage:
 class Refinement:
     """What the loop found.
 
-    Attributes: ``stages``, the last one is the model kept; ``alternatives``, other sets of effects that the record cannot tell apart
-    from it; ``verdict``; ``search`` with every model tried; ``seconds``.
+    Attributes: ``stages``, the last one is the model kept; ``alternatives``, other sets of effects that the record cannot
+    tell apart from it; ``verdict``; ``seconds``.
     """
 
     stages: tuple[Stage, ...]
@@ -126,7 +128,7 @@ def refine(
     verdict = judge_rest(bench, steps[-1].trial, [s.fit for s in stages])
     clock["alternatives"] = time.perf_counter()
     marks = list(clock.items())
-    seconds = {name: at - before for (_, before), (name, at) in zip(marks[:-1], marks[1:])}
+    seconds = {name: at - before for (_, before), (name, at) in pairwise(marks)}
     return Refinement(stages, others, verdict, seconds)
 
 
@@ -134,7 +136,7 @@ class _Judge:
     """Makes a `Fit`, with scores and intervals, of every model kept."""
 
     def __init__(
-        self, bench: Workbench, heldout: Record | None, model: str, per_inertia: bool, translational: bool, start: object
+        self, bench: Workbench, heldout: Record | None, model: str, per_inertia: bool, translational: bool, start: Start | None
     ) -> None:
         self.bench, self.heldout, self.model = bench, heldout, model
         self.per_inertia, self.translational, self.start = per_inertia, translational, start
@@ -164,7 +166,8 @@ class _Judge:
 
     def _predict(self, problem: Problem) -> Score:
         assert self.heldout is not None
-        windows, layout, group = prepare(self.bench.base, [self.heldout], self.bench.window, intervals=self.bench.windows.intervals)
+        bench = self.bench
+        windows, layout, group = prepare(bench.base, [self.heldout], bench.window, intervals=bench.windows.intervals)
         if self.bench.noise_factor != 1.0:
             factor = self.bench.noise_factor
             windows = eqx.tree_at(lambda w: (w.weight, w.drop), windows, (windows.weight / factor, windows.drop / factor))

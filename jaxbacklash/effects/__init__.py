@@ -17,6 +17,7 @@ from .friction import smooth_sign as smooth_sign
 from .hysteresis import BoucWen as BoucWen
 from .hysteresis import Dahl as Dahl
 from .hysteresis import Lugre as Lugre
+from .learned import LearnedTorque as LearnedTorque
 from .loads import Gravity as Gravity
 from .loads import LinearGravity as LinearGravity
 from .loads import Preload as Preload

@@ -20,8 +20,10 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
+from ..mechanics import Drive
 from ..parameters import unravel
 from ..signals import DEGREE
+from ..solvers.substeps import run_panels
 from ..system import System
 from .tangents import drive, rows, trajectories
 from .windows import Windows
@@ -42,7 +44,8 @@ class Problem(eqx.Module):
 
     ``base`` (p,) all parameter values; ``directions`` (p, q) how they move with the free ones (column j: scale of free
     parameter j at its place); ``lower``, ``upper`` (q,) bounds in the same units; ``shrink`` (q,) True where a value must
-    keep its sign, so that no step may take it below a third or above three times; ``tie`` overall weight of the ties; ``active`` how many of the q directions are not zero, those first.
+    keep its sign, so that no step may take it below a third or above three times; ``tie`` overall weight of the ties; ``active`` how
+    many of the q directions are not zero, those first.
     """
 
     windows: Windows
@@ -88,6 +91,44 @@ class Prediction(eqx.Module):
     end: Array
 
 
+class Trajectory(eqx.Module):
+    """What one window runs through: ``times`` (M,), ``states`` and ``drive`` at the samples, ``end`` state."""
+
+    times: Array
+    states: tuple[Array, ...]
+    drive: Drive
+    end: tuple[Array, ...]
+
+
+def trajectory(problem: Problem, theta: Array, start: Array, local: Array, t0: Array, force: Array) -> Trajectory:
+    """Simulate one window.
+
+    Parameters
+    ----------
+    theta : (q,) free parameters
+    start : (n,) state at the first sample
+    local : (m + 5,) spline coefficients, the last five shared with the next window
+    t0 : start time [s]
+    force : (P+1,) force at panel edges
+    """
+    w = problem.windows
+    system = problem.rebuild(theta)
+    along = drive(w, *_input(w, system.lag(), local), force)
+    state = tuple(start[i] for i in range(start.shape[0]))
+    end, states = run_panels(system, t0, state, along, w.panel, w.every, system.switches)
+    times = t0 + w.panel * w.every * jnp.arange(w.samples)
+    return Trajectory(times, states, jax.tree.map(lambda v: v[: -1 : w.every], along), end)
+
+
+def predict(problem: Problem, theta: Array, start: Array, local: Array, t0: Array, force: Array) -> Prediction:
+    """What one window predicts; the arguments are those of `trajectory`."""
+    w = problem.windows
+    path = trajectory(problem, theta, start, local, t0, force)
+    motion = jax.vmap(problem.rebuild(theta).output)(path.times, path.states, path.drive)
+    measured = w.basis[0, : -1 : w.every] @ local if w.intervals else jnp.zeros((0,))
+    return Prediction(motion, measured, jnp.stack(path.end))
+
+
 def predictions(problem: Problem, unknowns: Unknowns) -> Prediction:
     """Predictions of all windows, stacked on the leading axis."""
     return _predict(problem, unknowns)[0]
@@ -96,7 +137,7 @@ def predictions(problem: Problem, unknowns: Unknowns) -> Prediction:
 def _predict(problem: Problem, unknowns: Unknowns) -> tuple[Prediction, Any, Array, Array]:
     w = problem.windows
     system = problem.rebuild(unknowns.theta)
-    local = _local(unknowns.coefficients)
+    local = local_coefficients(unknowns.coefficients)
     u, du = jax.vmap(lambda c: _input(w, system.lag(), c))(local)
     end, states = trajectories(w, system, unknowns.starts, u, du)
     kept = tuple(s[:, :: w.every] for s in states)
@@ -141,7 +182,7 @@ def _input_tangents(problem: Problem, theta: Array, local: Array) -> tuple[Array
     return basis, jnp.swapaxes(by_lag, 1, 2)[..., None] * jax.jacfwd(lag)(theta)
 
 
-def _local(coefficients: Array) -> Array:
+def local_coefficients(coefficients: Array) -> Array:
     """Own coefficients and the first five of the next window, shape (W, m + 5)."""
     if coefficients.shape[1] == 0:
         return coefficients
@@ -156,11 +197,12 @@ def residuals(problem: Problem, unknowns: Unknowns, predicted: Prediction | None
     motion = (p.motion - w.measured) * w.weight
     base = (p.input - w.input) * w.input_weight
     following = jnp.concatenate([unknowns.starts[:, 1:], unknowns.starts[:, :1]], axis=1).T
-    tie = (p.end - following) * _tie_weight(problem, unknowns)
+    tie = (p.end - following) * tie_weights(problem, unknowns)
     return motion, base, tie
 
 
-def _tie_weight(problem: Problem, unknowns: Unknowns) -> Array:
+def tie_weights(problem: Problem, unknowns: Unknowns) -> Array:
+    """How sharply each window's end is tied to the next window's start, (W, n)."""
     w = problem.windows
     extra = unknowns.starts.shape[0] - 2
     # Internal states have no common scale; a loose tie is enough for what they carry from window to window.
@@ -175,12 +217,12 @@ def linearise(problem: Problem, unknowns: Unknowns) -> tuple[Blocks, Prediction]
     """
     w = problem.windows
     n, q, m = unknowns.starts.shape[0], unknowns.theta.shape[0], w.intervals
-    local = _local(unknowns.coefficients)
+    local = local_coefficients(unknowns.coefficients)
     predicted, states, u, du = _predict(problem, unknowns)
     basis, lagged = _input_tangents(problem, unknowns.theta, local)
     motion_rows, end_rows = rows(w, problem.rebuild, unknowns.theta, problem.active, states, u, du, basis, lagged)
     motion, base, tie = residuals(problem, unknowns, predicted)
-    tie_weight = _tie_weight(problem, unknowns)
+    tie_weight = tie_weights(problem, unknowns)
     weighted = jnp.concatenate([motion_rows * w.weight[:, None, :], end_rows * tie_weight[:, None, :]], axis=2)
     gram = jnp.einsum("wir,wjr->wij", weighted, weighted)
     slope = jnp.einsum("wir,wr->wi", weighted, jnp.concatenate([motion, tie], axis=1))
@@ -192,13 +234,18 @@ def linearise(problem: Problem, unknowns: Unknowns) -> tuple[Blocks, Prediction]
         gram = gram + jnp.pad(own, ((0, 0), (n, q), (n, q)))
         slope = slope + jnp.pad(jnp.einsum("wri,wr->wi", scaled, base), ((0, 0), (n, q)))
     cost = 0.5 * (jnp.sum(motion**2) + jnp.sum(base**2) + jnp.sum(tie**2))
-    blocks = _assemble(gram, slope, weighted[:, :, -n:], tie, tie_weight, n, m, q, cost)
+    blocks = assemble(gram, slope, weighted[:, :, -n:], tie, tie_weight, n, m, q, cost)
     return _ridge(problem, unknowns, blocks, n), predicted
 
 
-def _assemble(
+def assemble(
     gram: Array, slope: Array, end_rows: Array, tie: Array, tie_weight: Array, n: int, m: int, q: int, cost: Array
 ) -> Blocks:
+    """Blocks of the arrow from each window's own Gram matrix.
+
+    ``gram`` (W, U, U) and ``slope`` (W, U) of the unknowns each window sees: its own n + m, those it shares with the next
+    window (the first ones after that window's start), and q parameters; ``end_rows`` (W, U, n) weighted tangents of its end.
+    """
     size, own = n + m, slice(0, n + m)
     shared = slice(n + m, gram.shape[1] - q)
     theta = slice(gram.shape[1] - q, gram.shape[1])

@@ -2,6 +2,10 @@
 
 from .drawing import to_png_data_uri as to_png_data_uri
 from .drawing import to_svg as to_svg
+from .figures_criticism import missing_torque_curve as missing_torque_curve
+from .figures_criticism import missing_torque_in_time as missing_torque_in_time
+from .figures_criticism import missing_torque_surface as missing_torque_surface
+from .figures_criticism import where_it_fails as where_it_fails
 from .figures_joint import phase_plane as phase_plane
 from .figures_joint import restoring_force as restoring_force
 from .figures_model import candidate_ranking as candidate_ranking

@@ -1,0 +1,103 @@
+"""``jaxbacklash diagnose``."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from pathlib import Path
+from typing import Any
+
+from .. import __version__
+from ..criticism import Findings, where_it_fails
+from ..errors import BadInput
+from ..fitting import Fit
+from ..fitting import fit as fit_records
+from ..fitting.setup import add_effects
+from ..model_file import dump_model, load_model
+from ..report.diagnose_report import diagnose_report
+from ..report.result import as_json as result_of
+from ..system import System
+from .common import json_text, names, out_folder, progress, read, write_text
+
+
+def run(
+    path: Path,
+    *,
+    inertia: float | None,
+    model: str,
+    effects: str | None,
+    out: Path | None,
+    as_json: bool,
+    columns: list[str] | None,
+    unit: list[str] | None,
+    scale: list[str] | None,
+    resample: float | bool,
+    window: float,
+    starts: int,
+    translational: bool,
+    seed: int,
+) -> None:
+    """Read, fit, find what is missing, print; write the result, the model and the report when a folder is given."""
+    if not 0.02 <= window <= 10.0:
+        raise BadInput(f"--window {window:g}: wanted a length between 0.02 and 10 s")
+    if starts < 1:
+        raise BadInput(f"--starts {starts}: wanted one or more")
+    record = read(path, columns, unit, scale, resample)
+    folder = out_folder(out)
+    system: System | None = None
+    if model.endswith(".toml"):
+        if inertia is not None:
+            raise BadInput("--inertia: the model file already states the inertia; give one of the two")
+        system = add_effects(load_model(model), names(effects))
+    with progress(as_json) as tell:
+        fit = fit_records(
+            record, model=model if system is None else "joint", inertia=inertia, effects=names(effects), system=system,
+            window=window, starts=starts, seed=seed, translational=translational, progress=tell,
+        )  # fmt: skip
+        tell("looking for the missing torque", 0.88)
+        found = where_it_fails(fit)
+        words = shlex.join(["jaxbacklash", *sys.argv[1:]])
+        result = diagnosis(fit, found, command_line=words)
+        if folder is not None:
+            tell("drawing the report", 0.95)
+            write_text(folder / "result.json", json_text(result))
+            heading = f"{record.summary()}\n{found.sentences[0]}"
+            write_text(
+                folder / "model.toml",
+                dump_model(fit.system, translational=translational, per_inertia=fit.per_inertia, heading=heading),
+            )
+            diagnose_report(fit, found, result, folder / "report.html")
+    if as_json:
+        sys.stdout.write(json_text(result))
+        return
+    print(text(fit, found))
+    if folder is not None:
+        print(f"written: {folder}/result.json, model.toml, report.html")
+
+
+def diagnosis(fit: Fit, found: Findings, *, command_line: str = "") -> dict[str, Any]:
+    """The whole result of ``diagnose``: a fit's, with the findings and the missing torque."""
+    result = result_of(fit, command="diagnose", command_line=command_line, version=__version__)
+    result |= found.as_json()
+    result["verdict"] = "complete" if found.adequate else "incomplete"
+    result["verdict_text"] = " ".join(found.sentences[:2])
+    # The ranking of absent effects belongs here: result["stages"][0]["candidates"], best first.
+    return result
+
+
+def text(fit: Fit, found: Findings) -> str:
+    """What a person reads: the findings, then a table of what was asked."""
+    lines = [fit.records[0].summary(), *found.sentences]
+    if found.surface is not None:
+        lines += ["", "what the missing torque depends on, alone or in pairs: share explained out of sample"]
+        lines += [f"  {' x '.join(names):<16} {100 * share:5.1f} %" for names, share, _ in found.surface.tried[:5]]
+        lines += ["", "tested against                    of the torque   strength  chance"]
+        lines += [f"  {d.label:<31} {d.of:<14} {d.strength:8.2f}  {_chance(d.p)}" for d in found.dependences[:8]]
+        lines += ["", "the fit's parameters, as fitted and beside the missing torque"]
+        lines += [f"  {name:<24} {a:12.6g} {b:12.6g}" for name, (a, b) in found.surface.moved.items()]
+        # The ranking of absent effects is printed here.
+    return "\n".join(lines)
+
+
+def _chance(p: float) -> str:
+    return "below 1e-6" if p < 1e-6 else f"{p:.2g}"

@@ -1,0 +1,259 @@
+r"""The missing torque as a function of time.
+
+The link is given one more torque, unknown but not arbitrary: piecewise linear in time, its first or second differences
+Gaussian, of a size (and an order) chosen by the marginal likelihood of the record. It is estimated inside the shooting
+windows, tied into one trajectory, together with every window's start and the input's spline, so that nothing is
+differentiated and the band counts both noises.
+
+While an effect is missing, a fit bends play, stiffness and damping to cover part of it. So the parameters are estimated anew
+beside the torque (each within about half of its value): the torque is then what they cannot be, and how far they moved is told
+(Kennedy & O'Hagan, 2001, on why the two must be estimated together). ``hold`` keeps them as fitted.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import equinox as eqx
+import jax.numpy as jnp
+import numpy as np
+
+from ..errors import NoAnswer
+from ..fitting import Fit
+from ..fitting.fit import SCORE_WINDOW, prepare
+from ..fitting.setup import first_guess, free_names, make_problem
+from ..fitting.shooting import Problem, Trajectory, Unknowns
+from ..mechanics import Drive, Instant
+from ..parameters import unit_text, values, with_values
+from ..precision import require_double_precision
+from ..records import Record
+from ..system import System
+from .smoother import Improved, Point, Smoother, finish, improve, make_hats
+
+NODES = 10
+"""Values of the torque per shooting window of 0.1 s, where the rate allows: as fast as the data can tell."""
+WIDE = np.linspace(-2.0, 4.0, 7)
+"""Sizes of the torque's steps tried first, powers of ten of the torque that the noise of one window would hide."""
+MOTION = ("y", "dy", "x", "dx", "z", "dz", "deflection")
+NARROW = np.linspace(-0.75, 0.75, 7)
+STEPS = 8
+EVIDENT = 6.0
+"""Gain in log marginal likelihood from which a torque counts as missing: odds of 400 to 1."""
+
+
+@dataclass(frozen=True)
+class Inside:
+    """The smoother where it ended: for further questions at the same point. ``precision`` is of the torque's differences of
+    order ``order``."""
+
+    smoother: Smoother
+    point: Point
+    path: Trajectory
+    order: int
+    precision: float
+    free: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Latent:
+    """The missing torque at N times, and where the joint was then.
+
+    Attributes: ``t`` [s]; ``record`` (N,) which record; ``torque`` and its standard error ``stderr`` [unit]; ``y``, ``dy``,
+    ``x``, ``dx``, ``z``, ``dz`` the smoothed motion [rad, rad/s]; ``deflection`` beyond the play [rad]; ``side`` -1, 0, 1 for
+    contact below, play, contact above; ``evidence`` log marginal likelihood gained over no torque; ``system`` with the parameters
+    that go with this torque, ``moved`` their (value as fitted, value here, standard error here); ``converged``.
+    """
+
+    t: np.ndarray
+    record: np.ndarray
+    torque: np.ndarray
+    stderr: np.ndarray
+    y: np.ndarray
+    dy: np.ndarray
+    x: np.ndarray
+    dx: np.ndarray
+    z: np.ndarray
+    dz: np.ndarray
+    deflection: np.ndarray
+    side: np.ndarray
+    evidence: float
+    converged: bool
+    system: System
+    moved: dict[str, tuple[float, float, float]]
+    unit: str
+    records: tuple[Record, ...] = field(repr=False)
+    inside: Inside = field(repr=False)
+
+    @property
+    def evident(self) -> bool:
+        """True when the record asks for this torque."""
+        return self.evidence > EVIDENT
+
+    @property
+    def band95(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lower and upper end of the pointwise 95 % band [unit]."""
+        return self.torque - 1.96 * self.stderr, self.torque + 1.96 * self.stderr
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the torque [unit]."""
+        return float(np.sqrt(np.mean(self.torque**2)))
+
+    @property
+    def spacing(self) -> float:
+        """Time between neighbouring values [s]."""
+        return float(np.median(np.diff(self.t)))
+
+    def __str__(self) -> str:
+        if not self.evident:
+            return f"No torque is missing beyond {2 * float(np.median(self.stderr)):.2g} {self.unit}."
+        return f"A torque of {self.rms:.3g} {self.unit} rms is missing, known to {float(np.median(self.stderr)):.2g}."
+
+
+def missing_torque(fit: Fit, *, hold: bool = False) -> Latent:
+    """The torque missing from a fitted model, at its records.
+
+    Parameters
+    ----------
+    fit : a fit
+    hold : keep the parameters as fitted, instead of estimating them anew beside the torque
+
+    Raises
+    ------
+    NoAnswer
+        The smoother does not reach a finite misfit.
+    """
+    if fit.problem is None or fit.unknowns is None:
+        return missing_torque_of(
+            fit.system, fit.records[0], hold=hold, translational=fit.translational, per_inertia=fit.per_inertia
+        )
+    unit = unit_text("N m", translational=fit.translational, per_inertia=fit.per_inertia)
+    return _smooth(fit.problem, fit.unknowns, fit.system, fit.free, fit.records, unit, hold)
+
+
+def missing_torque_of(
+    system: System, record: Record, *, hold: bool = True, translational: bool = False, per_inertia: bool = False
+) -> Latent:
+    """The torque missing from a system with given parameters, at one record; see `missing_torque`."""
+    windows, _, _ = prepare(system, [record], SCORE_WINDOW)
+    free = free_names(system)
+    problem = make_problem(system, windows, free)
+    unit = unit_text("N m", translational=translational, per_inertia=per_inertia)
+    return _smooth(problem, first_guess(problem), system, free, (record,), unit, hold)
+
+
+def _smooth(
+    problem: Problem, start: Unknowns, system: System, free: tuple[str, ...], records: tuple[Record, ...], unit: str, hold: bool
+) -> Latent:
+    require_double_precision("missing_torque")
+    w = problem.windows
+    nodes = _nodes(w.samples)
+    length = float(w.panel) * w.every * w.samples
+    noise = 1.0 / float(np.max(np.asarray(w.weight)))
+    # The unit is the torque that the noise of one sample would hide over one window.
+    scale = 2.0 * float(system.inertia) * noise / length**2
+    smoother = Smoother(
+        eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(1.0)),
+        jnp.asarray(make_hats(w.basis.shape[1] - 1, nodes)),
+        jnp.asarray(scale),
+        jnp.asarray(np.any(np.asarray(w.weight) > 0.0, axis=1).astype(float)),
+        start.theta,
+        jnp.asarray(float(hold)),
+    )
+    point, found, converged = _search(smoother, Point(start, jnp.zeros((w.count, nodes))))
+    spread, loose, path = finish(smoother, point, found.best[0].astype(int), found.best[1])
+    names = list(values(system))
+    here = with_values(system, dict(zip(names, np.asarray(problem.parameters(point.unknowns.theta)))))
+    errors = np.asarray(loose) * np.sum(np.asarray(problem.directions), axis=0)
+    before, after = values(system), values(here)
+    columns = _along(here, records, scale * np.asarray(point.torque), scale * np.asarray(spread), path)
+    return Latent(
+        **columns,
+        evidence=float(np.max(np.asarray(found.evidence)) - float(found.without)),
+        converged=converged,
+        system=here,
+        moved={name: (before[name], after[name], float(error)) for name, error in zip(free, errors)},
+        unit=unit,
+        records=records,
+        inside=Inside(smoother, point, path, int(found.best[0]), float(np.exp(found.best[1])), free),
+    )
+
+
+def _nodes(samples: int) -> int:
+    """As many values a window as wished, a divisor of its samples where one is near, so that values meet samples."""
+    wanted = max(2, min(NODES, samples // 4))
+    near = [k for k in range(max(2, wanted - 3), wanted + 3) if samples % k == 0]
+    return min(near, key=lambda k: abs(k - wanted)) if near else wanted
+
+
+def _search(smoother: Smoother, at: Point) -> tuple[Point, Improved, bool]:
+    orders = jnp.asarray(np.repeat([1, 2], WIDE.size))
+
+    def total(seen: Improved, prior: np.ndarray) -> float:
+        return float(seen.cost) + 0.5 * float(np.exp(prior[1]) * seen.rough[int(prior[0])])
+
+    sizes = np.tile(WIDE, 2)
+    before: tuple[Point, Improved] | None = None
+    for _ in range(STEPS):
+        seen = improve(smoother, at, orders, jnp.asarray(-2.0 * np.log(10.0) * sizes))
+        if before is not None:
+            prior = np.asarray(before[1].best)
+            gain = total(before[1], prior) - total(seen, prior)
+            if not gain > -0.01 * (1.0 + total(before[1], prior)):
+                # The step was too long for the corners it crossed: go half of the way.
+                at = _middle(before[0], at)
+                continue
+            if abs(gain) < 0.05 + 1e-4 * abs(total(seen, prior)):
+                return at, seen, True
+        if not np.isfinite(float(seen.cost)):
+            raise NoAnswer("the missing torque could not be found: the model's motion grows without bound")
+        before, at = (at, seen), seen.point
+        told = np.asarray(seen.evidence).reshape(2, -1)
+        sizes = np.concatenate([np.reshape(sizes, (2, -1))[k, np.argmax(told[k])] + NARROW for k in range(2)])
+    assert before is not None
+    return before[0], before[1], False
+
+
+def _middle(one: Point, other: Point) -> Point:
+    middle = lambda a, b: 0.5 * (a + b)  # noqa: E731
+    u, v = one.unknowns, other.unknowns
+    return Point(
+        Unknowns(middle(u.theta, v.theta), middle(u.starts, v.starts), middle(u.coefficients, v.coefficients)),
+        middle(one.torque, other.torque),
+    )
+
+
+def _along(
+    system: System, records: tuple[Record, ...], torque: np.ndarray, stderr: np.ndarray, path: Trajectory
+) -> dict[str, np.ndarray]:
+    columns: dict[str, list[np.ndarray]] = {}
+    per = path.times.shape[1]
+    for number, (record, rows) in enumerate(zip(records, record_rows(records, per))):
+        at = np.asarray(path.times)[rows].ravel()
+        each = torque.shape[1]
+        t = at[0] + (at[1] - at[0]) * per / each * np.arange((rows.stop - rows.start) * each)
+        inside = t <= record.t[-1] + 1e-9
+        found = [np.interp(t, at, np.asarray(v)[rows].ravel()) for v in (*path.states[:2], path.drive.x, path.drive.dx)]
+        now = moments(system, t, *found)
+        part = {
+            "t": t, "record": np.full(t.size, number), "torque": torque[rows].ravel(), "stderr": stderr[rows].ravel(),
+            **{name: np.broadcast_to(np.asarray(getattr(now, name)), t.shape) for name in MOTION},
+            "side": np.sign(np.broadcast_to(np.asarray(now.deflection), t.shape)),
+        }  # fmt: skip
+        for name, row in part.items():
+            columns.setdefault(name, []).append(row[inside])
+    return {name: np.concatenate(parts) for name, parts in columns.items()}
+
+
+def record_rows(records: tuple[Record, ...], samples: int) -> list[slice]:
+    """Which windows hold each record; an empty one follows each."""
+    counts = [-(-record.samples // samples) for record in records]
+    firsts = np.cumsum([0, *(count + 1 for count in counts[:-1])])
+    return [slice(int(first), int(first) + count) for first, count in zip(firsts, counts)]
+
+
+def moments(system: System, t: Any, y: Any, dy: Any, x: Any, dx: Any) -> Instant:
+    """What effects see along a motion, arrays of one shape."""
+    hidden = tuple(jnp.zeros_like(y) for _ in system.state_names[2:])
+    return system.instant(jnp.asarray(t), (jnp.asarray(y), jnp.asarray(dy), *hidden), Drive(x, dx, 0.0 * x))

@@ -1,0 +1,103 @@
+"""Where a model fails: findings in plain sentences, each backed by a test."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..fitting import Fit
+from .failures import Dependence, depends
+from .latent import Latent, missing_torque
+from .surface import Surface, explain_torque
+from .words import NOISE, headline, sentences
+
+
+@dataclass(frozen=True)
+class Findings:
+    """Where and how a model fails.
+
+    Attributes: ``sentences`` for a person, most telling first; a single one where nothing fails; ``dependences`` every question
+    that was asked (`Dependence`), strongest first; ``latent`` the missing torque, ``surface`` its best coordinates (None
+    where no torque is missing); ``misfit``, ``median`` of the prediction error over the noise.
+    """
+
+    sentences: tuple[str, ...]
+    dependences: tuple[Dependence, ...]
+    latent: Latent
+    surface: Surface | None
+    misfit: float
+    median: float
+
+    @property
+    def adequate(self) -> bool:
+        """True when what the model leaves is noise."""
+        return self.surface is None
+
+    @property
+    def significant(self) -> tuple[Dependence, ...]:
+        """The dependences that chance does not explain."""
+        return () if self.adequate else tuple(found for found in self.dependences if found.significant)
+
+    def __str__(self) -> str:
+        return "\n".join(self.sentences)
+
+    def as_json(self) -> dict[str, Any]:
+        """Findings and the missing torque as entries of result.json."""
+        surface = self.surface
+        told: dict[str, Any] = {
+            "rms": self.latent.rms if surface is None else surface.rms,
+            "stderr": float(np.median(self.latent.stderr)),
+            "unit": self.latent.unit,
+            "evident": self.latent.evident,
+            "evidence": self.latent.evidence,
+            "explained_by": [] if surface is None else list(surface.coordinates),
+            "share": None if surface is None else surface.share,
+            "tried": [] if surface is None else [
+                {"coordinates": list(names), "share": share, "evidence": evidence} for names, share, evidence in surface.tried
+            ],
+            "moved": {} if surface is None else {
+                name: {"fitted": a, "beside_torque": b} for name, (a, b) in surface.moved.items()
+            },
+        }  # fmt: skip
+        return {"findings": list(self.sentences), "latent_torque": told}
+
+
+def where_it_fails(fit: Fit, latent: Latent | None = None, surface: Surface | None = None) -> Findings:
+    """Set the misfit of a fit against what it may depend on.
+
+    Parameters
+    ----------
+    fit : a fit
+    latent, surface : the missing torque and its best coordinates, where they are known already
+
+    Raises
+    ------
+    NoAnswer
+        The missing torque cannot be found.
+    """
+    latent = missing_torque(fit) if latent is None else latent
+    if not latent.evident:
+        asked = depends(latent, latent.torque, _misfit(fit, latent))
+        return Findings((NOISE.format(**_numbers(fit, latent)),), tuple(asked), latent, None, fit.score.rms, fit.score.median)
+    surface = explain_torque(latent) if surface is None else surface
+    asked = depends(latent, surface.torque, _misfit(fit, latent))
+    told = (headline(fit, surface), *sentences(surface, asked))
+    return Findings(told, tuple(asked), latent, surface, fit.score.rms, fit.score.median)
+
+
+def _numbers(fit: Fit, latent: Latent) -> dict[str, Any]:
+    return {"rms": fit.score.rms, "bound": 2.0 * float(np.median(latent.stderr)), "unit": latent.unit}
+
+
+def _misfit(fit: Fit, latent: Latent) -> np.ndarray:
+    """Residual over noise at the latent torque's times, (N,): root mean square over one spacing of them."""
+    found = np.zeros(latent.t.size)
+    for number, score in enumerate(fit.scores):
+        rows = latent.record == number
+        t = latent.t[rows]
+        near = np.clip(np.searchsorted(t, score.t + 0.5 * latent.spacing) - 1, 0, t.size - 1)
+        count = np.maximum(np.bincount(near, minlength=t.size), 1)
+        found[rows] = np.sqrt(np.bincount(near, score.residual**2, t.size) / count)
+    return found
