@@ -24,7 +24,8 @@ class System(eqx.Module):
 
     Attributes: ``inertia`` J [kg m^2]; ``contact`` a `Contact` with play, a `Spring` without, or None; ``damper``;
     ``effects`` by canonical name; ``observed`` the measured channel: ``"z"``, ``"y"``, or ``"T"`` for the torque the
-    joint transmits from the link to its base.
+    joint transmits from the link to its base; ``smoothed`` ports whose dry friction has its sign smoothed even where steps
+    are located, which is quicker and enough for friction that is only asked for its derivative at zero.
     """
 
     inertia: Scalar = param(unit="kg m^2", lower=0.0, required=True, label="inertia of the link")
@@ -32,16 +33,17 @@ class System(eqx.Module):
     damper: Damper = eqx.field(metadata={"bare": True})
     effects: dict[str, AbstractEffect] = eqx.field(default_factory=dict, metadata={"bare": True})
     observed: str = eqx.field(default="z", static=True)
+    smoothed: tuple[str, ...] = eqx.field(default=(), static=True)
 
     def with_effects(self, *effects: AbstractEffect) -> System:
         """The same system with effects added, or replaced where one of the same name was there."""
         added = {canonical_name(effect): effect for effect in effects}
-        return System(self.inertia, self.contact, self.damper, {**self.effects, **added}, self.observed)
+        return System(self.inertia, self.contact, self.damper, {**self.effects, **added}, self.observed, self.smoothed)
 
     def without(self, *names: str) -> System:
         """The same system with effects taken out by name."""
         kept = {name: effect for name, effect in self.effects.items() if name not in names}
-        return System(self.inertia, self.contact, self.damper, kept, self.observed)
+        return System(self.inertia, self.contact, self.damper, kept, self.observed, self.smoothed)
 
     @property
     def state_names(self) -> tuple[str, ...]:
@@ -63,7 +65,7 @@ class System(eqx.Module):
         if self.observed == "T":
             return ()
         ports = {effect.port for effect in self.effects.values() if effect.slides}
-        return tuple(port for port in ("joint", "ground") if port in ports)
+        return tuple(port for port in ("joint", "ground") if port in ports and port not in self.smoothed)
 
     @property
     def switches(self) -> bool:
@@ -86,11 +88,12 @@ class System(eqx.Module):
 
     def sliding(self, t: Scalar, state: State, drive: Drive, side: Scalar | None) -> tuple[State, tuple[Scalar, Scalar]]:
         """`rates` without dry friction, and the acceleration that it can take from the link at joint and ground."""
-        now = replace(self.instant(t, state, drive, side), slip_z=0.0, slip_y=0.0)
+        slips = {"slip_z": 0.0 if "joint" in self.slides else None, "slip_y": 0.0 if "ground" in self.slides else None}
+        now = replace(self.instant(t, state, drive, side), **slips)
         capacity: dict[str, Any] = {"joint": jnp.zeros_like(now.y), "ground": jnp.zeros_like(now.y)}
         for name, own in self._own_states(state):
             effect = self.effects[name]
-            if effect.slides:
+            if effect.slides and effect.port in self.slides:
                 capacity[effect.port] = capacity[effect.port] + effect.dry(now.seen_by(own)) / self.inertia
         return self._rates(now, state, drive), (capacity["joint"], capacity["ground"])
 

@@ -108,7 +108,10 @@ class Workbench:
         """
         shapes = shapes or {}
         quiet = {name: shapes.get(name, law()) for name, law in self.static.items() if name not in effects}
-        bare = System(joint.inertia, joint.contact, joint.damper, {}, joint.observed)
+        # Friction that is only judged need not stick; friction in the model does, at its port alone.
+        sliding = {e.port for e in effects.values() if e.slides}
+        smoothed = tuple(port for port in ("joint", "ground") if port not in sliding)
+        bare = System(joint.inertia, joint.contact, joint.damper, {}, joint.observed, smoothed)
         system = bare.with_effects(*quiet.values(), *effects.values())
         free = (*self.base_free, *(n for n in free_names(system) if n.partition(".")[0] in effects), *extra)
         return _pad(make_problem(system, self.windows, free)), free

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, Protocol
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 from .panels import Cubic, Scalar, State, _add, _first_crossing, _side
 
@@ -22,6 +23,8 @@ SOON = 1e-4
 """Share of a panel within which an event counts as met: a fraction of a microsecond."""
 STILL = 1e-9
 """Speed that counts as rest [rad/s]."""
+SHARES, WEIGHTS = np.array([0.5, 0.5, 1.0]), np.array([2.0, 2.0, 1.0])
+"""Stages 2 to 4 of the classical Runge-Kutta step: share of the step at which they are taken, and weight."""
 
 
 class Sliding(Protocol):
@@ -131,13 +134,17 @@ def advance_dry(system: Sliding, t: Scalar, state: State, drive_at: Any, base: C
             half = 0.5 * step
             side = jnp.where(last, side, region(z + half * (dz + 0.5 * half * (acceleration - start.base))))
 
+        def stage(carry: Any, at: Any) -> Any:
+            slope, total, _ = carry
+            share, weight = at
+            tried = _add(state, slope, share * step)
+            rates, moment = see(begin + share * step, tried, side)
+            slope = (tried[1], mode.acceleration(moment), *rates[2:])
+            return (slope, _add(total, slope, weight), moment), None
+
         k1 = (dy, acceleration, *first[2:])
-        slopes, end = [k1], start
-        for share in (0.5, 0.5, 1.0):
-            at = _add(state, slopes[-1], share * step)
-            rates, end = see(begin + share * step, at, side)
-            slopes.append((at[1], mode.acceleration(end), *rates[2:]))
-        state = tuple(s + (step / 6.0) * (a + 2.0 * (b + c) + d) for s, a, b, c, d in zip(state, *slopes))
+        (_, total, end), _ = jax.lax.scan(stage, (k1, k1, start), (SHARES, WEIGHTS))
+        state = _add(state, total, step / 6.0)
         begin = begin + step
         state = _put_right(system.slides, state, mode, (start, end), base.slope(begin), step, met)
         half = 0.5 * (h - begin)
@@ -146,7 +153,7 @@ def advance_dry(system: Sliding, t: Scalar, state: State, drive_at: Any, base: C
         return (state, begin, met, side), None
 
     no = jnp.zeros_like(state[0], dtype=bool)
-    # A loop, not two copies: with many laws in the system the compiler makes ten times the work of the copies' derivative.
+    # Loops, here and over the stages, not copies: with many laws the compiler makes ten times the work of their derivative.
     begun: Any = (state, jnp.zeros_like(state[0]), (no, no), region(state[0] - base.a))
     (state, *_), _ = jax.lax.scan(piece, begun, jnp.array([False, True]))
     return state
