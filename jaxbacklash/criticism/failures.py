@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import chi2, rankdata
+from scipy.special import chdtrc
 
 from ..records import Record
 from ..signals import choose_intervals, fit_spline
@@ -131,6 +131,8 @@ def _test(
     latent: Latent, torque: np.ndarray, misfit: np.ndarray, name: str, label: str, unit: str, of: str, values: np.ndarray,
     bins: int, *, count: int,
 ) -> Dependence | None:  # fmt: skip
+    from scipy.stats import rankdata  # half a second to import, and nobody else needs it
+
     names: tuple[str, ...] = ()
     if bins > 0:
         edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, bins + 1)))
@@ -155,7 +157,7 @@ def _test(
         independent = ranks.size / _correlated(rest, latent.record)
         spread = np.sqrt(average((torque - mean[where]) ** 2) / np.maximum(number * independent / ranks.size, 1.0))
         # Kruskal and Wallis's statistic, with as many values as are independent.
-        p = float(chi2.sf((independent - 1.0) * between, np.sum(number > 0) - 1.0))
+        p = float(chdtrc(np.sum(number > 0) - 1.0, (independent - 1.0) * between))
     trend = 0.0 if names == PLACES else float(np.corrcoef(rankdata(values), ranks)[0, 1])
     return Dependence(
         name, label, unit, of, edges, names, np.sqrt(average(misfit**2)), mean, spread, np.sqrt(square),

@@ -61,6 +61,7 @@ class QuickLook:
 
     def __init__(self, record: Record) -> None:
         self.motion = motion(record)
+        self._columns: dict[str, np.ndarray] = {}
         dt = record.dt
         reach = int(np.clip(round(HALF_WIDTH / dt), 8, record.samples // 6))
         tau = np.arange(-reach, reach + 1) / reach
@@ -106,7 +107,10 @@ class QuickLook:
         if len(variants) <= keep:
             return variants
         left, by = self.missing(system, free)
-        columns = np.stack([self.column(v, system) for v in variants], axis=1)
+        name = canonical_name(variants[0])
+        if name not in self._columns or self._columns[name].shape[1] != len(variants):
+            self._columns[name] = np.stack([self.column(v, system) for v in variants], axis=1)
+        columns = self._columns[name]
         white = _whitener(left - by @ np.linalg.lstsq(by, left, rcond=None)[0])
         left, by, columns = white(left), white(by), white(columns)
         basis = np.linalg.qr(by)[0]

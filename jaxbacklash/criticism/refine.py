@@ -124,7 +124,7 @@ def refine(
     stages = tuple(Stage(s.added, s.dropped, judged(s.trial), s.ranking, s.evidence) for s in steps)
     clock["score"] = time.perf_counter()
     progress("looking for alternatives", 0.92)
-    others = alternatives(search, steps[-1].trial)
+    others = alternatives(search, steps)
     verdict = judge_rest(bench, steps[-1].trial, [s.fit for s in stages])
     clock["alternatives"] = time.perf_counter()
     marks = list(clock.items())

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ..fitting.fit import silent
 from ..mechanics import AbstractEffect
+from ..parameters import specs
 from .candidates import Candidate, rank
-from .workbench import Trial, Workbench, adequate
+from .workbench import Trial, Workbench, adequate, strengths
 
 MOST_EFFECTS = 5
 """A model with more effects than this is no explanation any more."""
@@ -18,7 +19,15 @@ TRIED = 4
 """Candidates that are really refitted at every stage."""
 NOISE_FLOOR = 1.03
 """Root of the reduced chi-square of a tied fit up to which what is left counts as noise."""
-WHOLE = 200
+CLOSE, HOPEFUL = 0.9, 0.2
+"""Predicted gain, as a share of the best candidate's, that earns a refit: once noise is reached, and before."""
+CLEAR = 8.0
+"""An effect that stands so many standard errors from zero need not be left out to see that it is missed."""
+UNEXPLAINED = 0.02
+"""Reduced chi-square above 1 that is too much for an error of the estimated noise."""
+LITTLE, MOST = 0.05, 0.5
+"""Share of the excess that an addition must take away where a rest stays unexplained: a torque, a measuring effect."""
+WHOLE = 60
 """Linearisations allowed to a model that is kept."""
 
 
@@ -49,6 +58,30 @@ def explained(trial: Trial) -> bool:
     return trial.tied and trial.misfit < NOISE_FLOOR
 
 
+def excess(trial: Trial) -> float:
+    """By how much the reduced chi-square exceeds that of noise."""
+    return max(trial.misfit**2 - 1.0, 0.0)
+
+
+def measures_only(law: type[AbstractEffect]) -> bool:
+    """True for what happens in the measuring chain, which exerts no torque and leaves the play alone."""
+    return law.torque is AbstractEffect.torque and law.reshape is AbstractEffect.reshape
+
+
+def significance(trial: Trial, name: str) -> float:
+    """How many standard errors the strongest strength of an effect of the model stands from its null value."""
+    size = np.sqrt(np.maximum(np.diag(trial.schur), 1e-300))
+    inverse = np.linalg.pinv(trial.schur / np.outer(size, size), rcond=1e-14, hermitian=True)
+    errors = np.sqrt(np.maximum(np.diag(inverse), 1e-300)) / size * trial.scales
+    errors *= np.sqrt(max(1.0, trial.misfit**2) * trial.correlation)
+    described = specs(trial.system.effects[name])
+    found = [
+        abs(trial.value[full] - (described[n].null or 0.0)) / max(errors[trial.free.index(full)], 1e-300)
+        for n in strengths(trial.system.effects[name]) if (full := f"{name}.{n}") in trial.free
+    ]  # fmt: skip
+    return float(max(found, default=0.0))
+
+
 class Search:
     """Keeps every model that was fitted, so that none is fitted twice."""
 
@@ -58,12 +91,13 @@ class Search:
 
     def settle(self, trial: Trial) -> Trial:
         """The trial finished, and its windows tied where it is good enough for that."""
+        if not trial.tied and adequate(trial):
+            tied = self.bench.fit(self.bench.effects(trial), trial, tied=True, patience=WHOLE)
+            if adequate(tied):
+                return self._keep(tied)
         if not trial.done:
             trial = self._keep(self.bench.fit(self.bench.effects(trial), trial, tied=trial.tied, patience=WHOLE))
-        if trial.tied or not adequate(trial):
-            return trial
-        tied = self.bench.fit(self.bench.effects(trial), trial, tied=True, patience=WHOLE)
-        return self._keep(tied) if adequate(tied) else trial
+        return trial
 
     def base(self) -> Trial:
         """The joint alone."""
@@ -98,6 +132,22 @@ class Search:
             return self.run()
         if not explained(final):
             steps = self.with_hidden(steps)
+        return self.trim(steps)
+
+    def trim(self, steps: list[Step]) -> list[Step]:
+        """The path without its last additions where they only nibble at a misfit that nothing explains.
+
+        A clear rest is a sign that something else is at work, and what takes away a small part of it stands in for that; the
+        measuring chain, which can imitate nearly anything a little, has to take away most of it.
+        """
+        steps = list(steps)
+        while len(steps) > 1 and excess(steps[-1].trial) > UNEXPLAINED:
+            added = steps[-1].added
+            before, after = excess(steps[-2].trial), excess(steps[-1].trial)
+            least = MOST if added is not None and measures_only(self.bench.laws[added]) else LITTLE
+            if before - after > least * before:
+                break
+            steps.pop()
         return steps
 
     def with_hidden(self, steps: list[Step]) -> list[Step]:
@@ -121,25 +171,45 @@ class Search:
         current, steps = start, list(steps)
         while len(current.names) < MOST_EFFECTS:
             self.progress("judging absent effects" if not current.names else f"with {', '.join(sorted(current.names))}", 0.3)
-            ranking = rank(self.bench, current)
-            steps[-1] = Step(steps[-1].trial, steps[-1].added, steps[-1].dropped, tuple(ranking), {})
-            tried = {c.name: self.add(current, c) for c in self._worth(current, ranking)}
+            ranking = tuple(rank(self.bench, current))
+            tried = self.attempts(current, ranking)
             evidence = {n: gain(current, t) for n, t in tried.items()}
-            steps[-1] = Step(steps[-1].trial, steps[-1].added, steps[-1].dropped, tuple(ranking), evidence)
+            steps[-1] = replace(steps[-1], ranking=ranking, evidence=evidence)
             if not tried:
                 break
-            name = min(tried, key=lambda n: tried[n].criterion)
+            name = self.best(tried)
             if evidence[name] < demanded(self.bench):
                 break
             current, dropped = self.prune(self.settle(tried[name]), spare=name)
             steps.append(Step(current, name, dropped, ()))
         return steps
 
+    def attempts(self, current: Trial, ranking: tuple[Candidate, ...]) -> dict[str, Trial]:
+        """The likeliest candidates really refitted; few where the first already leaves nothing but noise."""
+        scale = max(1.0, current.misfit**2) * current.correlation
+        telling = [c for c in ranking if c.gain / scale > 0.5 * demanded(self.bench)][:TRIED]
+        tried: dict[str, Trial] = {}
+        for c in telling:
+            enough = tried and min(t.misfit for t in tried.values()) < NOISE_FLOOR
+            if c.gain < (CLOSE if enough else HOPEFUL) * telling[0].gain:
+                continue
+            self.progress(f"trying {c.name}", 0.4)
+            tried[c.name] = self.add(current, c)
+        return tried
+
+    def best(self, tried: dict[str, Trial]) -> str:
+        """The name with the lowest criterion; of those that do as well, one that acts rather than one that only measures."""
+        lowest = min(t.criterion for t in tried.values())
+        level = [n for n, t in tried.items() if t.criterion - lowest < 1.0]
+        return min(level, key=lambda n: (measures_only(self.bench.laws[n]), tried[n].criterion))
+
     def prune(self, trial: Trial, spare: str | None = None) -> tuple[Trial, tuple[str, ...]]:
         """The model without the effects it no longer needs."""
         dropped: list[str] = []
         while True:
-            losses = {n: gain(self.without(trial, n), trial) for n in trial.names if n != spare}
+            # Far from zero needs no trial; what is near is left out and fitted again.
+            doubtful = [n for n in trial.names if n != spare and significance(trial, n) < CLEAR]
+            losses = {n: gain(self.without(trial, n), trial) for n in doubtful}
             needless = [n for n, loss in losses.items() if loss < demanded(self.bench)]
             if not needless:
                 return trial, tuple(dropped)
@@ -158,11 +228,6 @@ class Search:
                 if best is None or trial.criterion < best.criterion:
                     best = trial
         return best
-
-    def _worth(self, current: Trial, ranking: list[Candidate]) -> list[Candidate]:
-        scale = max(1.0, current.misfit**2)
-        telling = [c for c in ranking if c.gain / scale > 0.5 * demanded(self.bench)]
-        return telling[:TRIED]
 
     def _keep(self, trial: Trial) -> Trial:
         key = (trial.names, trial.tied)

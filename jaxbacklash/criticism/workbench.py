@@ -30,6 +30,8 @@ COLUMNS = 10
 """Free parameters in steps of this many, so that adding one compiles nothing."""
 PATIENCE = 25
 """Linearisations spent on a model before it is compared with others; the one that is kept is finished."""
+ENOUGH = 3e-3
+"""A model that is clearly wrong is not fitted on when a step promises less than this share of its misfit."""
 
 
 @dataclass(frozen=True)
@@ -141,7 +143,7 @@ class Workbench:
         if tied:
             problem, solution, _ = tie_windows(problem, unknowns, (100.0,), limit=patience)
         else:
-            solution = minimise(problem, unknowns, ArrowLevenbergMarquardt(limit=patience, atol=1e-2))
+            solution = minimise(problem, unknowns, ArrowLevenbergMarquardt(limit=patience, atol=0.1, rtol=ENOUGH))
         return self._trial(problem, solution, frozenset(effects), free, tied, patience)
 
     def look(self, problem: Problem, unknowns: Unknowns) -> tuple[np.ndarray, np.ndarray, float, np.ndarray]:

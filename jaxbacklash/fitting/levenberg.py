@@ -14,6 +14,7 @@ from .arrow import solve
 from .shooting import Blocks, Prediction, Problem, Unknowns, linearise
 
 Array = Any
+_linearise = eqx.filter_jit(linearise)  # traced once, though a search writes it down three times
 
 
 class ArrowState(eqx.Module):
@@ -35,17 +36,17 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
     ``fn`` is not differentiated as a whole: ``args`` is the `Problem`, whose blocks are built by
     `jaxbacklash.fitting.shooting.linearise`. The search ends when a full step promises to lower half the sum of squares by less
     than ``atol`` (in units of the noise, so 1e-3 means that no parameter would move by 5 % of its standard error), or by
-    less than ``rtol`` of its value, or after ``limit`` linearisations; a limit of 1 only looks at the start.
+    less than ``rtol`` of what it exceeds the noise by, or after ``limit`` linearisations; a limit of 1 only looks at the start.
     """
 
-    rtol: float = eqx.field(default=0.0, static=True)
+    rtol: Array = eqx.field(default=0.0, converter=np.asarray)
     atol: Array = eqx.field(default=1e-3, converter=np.asarray)
     damping: Array = eqx.field(default=1e-3, converter=np.asarray)
     limit: Array = eqx.field(default=60, converter=np.asarray)
     norm: Any = eqx.field(default=optx.max_norm, static=True)
 
     def init(self, fn: Any, y: Unknowns, args: Problem, options: Any, f_struct: Any, aux_struct: Any, tags: Any) -> ArrowState:
-        shapes = eqx.filter_eval_shape(linearise, args, y)
+        shapes = eqx.filter_eval_shape(_linearise, args, y)
         blocks, predicted = jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), shapes)
         blocks = eqx.tree_at(lambda b: b.cost, blocks, jnp.asarray(jnp.inf))
         q = y.theta.shape[0]
@@ -66,10 +67,10 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
             theta, y.starts + solution.local[:, :n].T, y.coefficients + solution.local[:, n:]
         )
         trial = jax.tree.map(lambda new, old: jnp.where(state.ready, new, old), trial, y)
-        blocks, predicted = linearise(args, trial)
+        blocks, predicted = _linearise(args, trial)
         better = blocks.cost < state.blocks.cost
         pick = lambda new, old: jnp.where(better, new, old)  # noqa: E731
-        damping = jnp.where(better, jnp.maximum(0.2 * state.damping, 1e-12), jnp.clip(6.0 * state.damping, 1e-5, 1e12))
+        damping = jnp.where(better, jnp.maximum(0.1 * state.damping, 1e-12), jnp.clip(10.0 * state.damping, 1e-7, 1e12))
         damping = jnp.where(state.ready, damping, jnp.asarray(self.damping))
         # What a Gauss-Newton step promised at the old point, damped as it was: the measure of being there.
         promise = -0.5 * (jnp.sum(state.blocks.slope * solution.local) + jnp.sum(state.blocks.slope_theta * solution.theta))
@@ -87,7 +88,8 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
     def terminate(self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any) -> Any:
         # Where the model misfits, the noise is no measure of what matters: the misfit is.
         rows = jnp.sum(args.windows.weight > 0.0)
-        small = state.gain < self.atol * jnp.maximum(1.0, 2.0 * state.blocks.cost / (rows + 1.0))
+        cost = state.blocks.cost
+        small = state.gain < self.atol * jnp.maximum(1.0, 2.0 * cost / (rows + 1.0)) + self.rtol * jnp.maximum(cost - rows, 0.0)
         # A promise under heavy damping says little; wait until the damping has come down or nothing helps any more.
         done = (small & (state.damping < 1.0)) | (state.damping > 1e11) | (state.steps >= self.limit)
         return done & state.ready, optx.RESULTS.successful

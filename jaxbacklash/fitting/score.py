@@ -67,7 +67,7 @@ def score(problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 
         tie[first : first + count] *= (index % group) != group - 1
     still = eqx.tree_at(lambda p: (p.windows.tie, p.tie), still, (jnp.asarray(tie), jnp.asarray(1.0)))
     begin = Unknowns(jnp.zeros_like(unknowns.theta), unknowns.starts, unknowns.coefficients)
-    solution = minimise(still, begin, ArrowLevenbergMarquardt(atol=1e-2, damping=1e-6))
+    solution = minimise(still, begin, ArrowLevenbergMarquardt(atol=0.3, damping=1e-6, limit=20))
     found = solution.value
     predicted = solution.stats["state"].predicted
     scores = tuple(_summarise(still, found, predicted, layout, group, i) for i in range(len(layout.first)))

@@ -44,8 +44,8 @@ class Problem(eqx.Module):
 
     ``base`` (p,) all parameter values; ``directions`` (p, q) how they move with the free ones (column j: scale of free
     parameter j at its place); ``lower``, ``upper`` (q,) bounds in the same units; ``shrink`` (q,) True where a value must
-    keep its sign, so that no step may take it below a third or above three times; ``tie`` overall weight of the ties; ``active`` how
-    many of the q directions are not zero, those first.
+    keep its sign, so that no step may take it below a third or above three times; ``tie`` overall weight of the ties;
+    ``active`` how many of the q directions are not zero, those first.
     """
 
     windows: Windows
