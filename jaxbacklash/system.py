@@ -88,8 +88,8 @@ class System(eqx.Module):
 
     def sliding(self, t: Scalar, state: State, drive: Drive, side: Scalar | None) -> tuple[State, tuple[Scalar, Scalar]]:
         """`rates` without dry friction, and the acceleration that it can take from the link at joint and ground."""
-        slips = {"slip_z": 0.0 if "joint" in self.slides else None, "slip_y": 0.0 if "ground" in self.slides else None}
-        now = replace(self.instant(t, state, drive, side), **slips)
+        slip_z, slip_y = (0.0 if port in self.slides else None for port in ("joint", "ground"))
+        now = replace(self.instant(t, state, drive, side), slip_z=slip_z, slip_y=slip_y)
         capacity: dict[str, Any] = {"joint": jnp.zeros_like(now.y), "ground": jnp.zeros_like(now.y)}
         for name, own in self._own_states(state):
             effect = self.effects[name]

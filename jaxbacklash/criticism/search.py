@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..fitting.fit import silent
+from ..fitting.fit import ADEQUATE, silent
 from ..mechanics import AbstractEffect
 from ..parameters import specs
 from .candidates import Candidate, rank
@@ -21,12 +21,15 @@ NOISE_FLOOR = 1.03
 """Root of the reduced chi-square of a tied fit up to which what is left counts as noise."""
 CLOSE, HOPEFUL = 0.9, 0.2
 """Predicted gain, as a share of the best candidate's, that earns a refit: once noise is reached, and before."""
+AS_WELL = 0.98
+"""Share of the best candidate's gain that counts as doing as well: then the simpler law is taken."""
 CLEAR = 8.0
 """An effect that stands so many standard errors from zero need not be left out to see that it is missed."""
 UNEXPLAINED = 0.02
 """Reduced chi-square above 1 that is too much for an error of the estimated noise."""
-LITTLE, MOST = 0.05, 0.5
-"""Share of the excess that an addition must take away where a rest stays unexplained: a torque, a measuring effect."""
+LITTLE, MUCH, MOST = 0.05, 0.25, 0.5
+"""Share of the excess that an addition must take away where a rest stays unexplained: at least; as long as laws with
+internal states have not been tried; and if it is an effect of the measuring chain."""
 WHOLE = 60
 """Linearisations allowed to a model that is kept."""
 
@@ -88,6 +91,7 @@ class Search:
     def __init__(self, bench: Workbench, progress: Callable[[str, float], None] = silent) -> None:
         self.bench, self.progress = bench, progress
         self.known: dict[tuple[frozenset[str], bool], Trial] = {}
+        self.level: dict[tuple[str, ...], float] = {}
 
     def settle(self, trial: Trial) -> Trial:
         """The trial finished, and its windows tied where it is good enough for that."""
@@ -123,7 +127,7 @@ class Search:
     def run(self) -> list[Step]:
         """The whole search: the path from the joint alone to the model kept."""
         base = self.base()
-        steps = self.forward(base, [Step(base, None, (), ())])
+        steps = self.forward(base, [Step(base, None, (), ())], MUCH)
         final = steps[-1].trial
         if final.tied and final.misfit < 0.97:
             # A noise estimate cannot be right that exceeds what a model leaves: corners were taken for noise.
@@ -131,8 +135,12 @@ class Search:
             self.known.clear()
             return self.run()
         if not explained(final):
+            # What acts through a state of its own is tried before what explains a little here and there.
             steps = self.with_hidden(steps)
-        return self.trim(steps)
+            if not explained(steps[-1].trial):
+                steps = self.forward(steps[-1].trial, steps, LITTLE)
+        steps, self.level = self.swap(self.trim(steps))
+        return steps
 
     def trim(self, steps: list[Step]) -> list[Step]:
         """The path without its last additions where they only nibble at a misfit that nothing explains.
@@ -151,23 +159,66 @@ class Search:
         return steps
 
     def with_hidden(self, steps: list[Step]) -> list[Step]:
-        """Another path, by a law with internal states, if it ends better than the one without."""
-        base, final = steps[0].trial, steps[-1].trial
-        starts = [base] if not final.names else [base, final]
-        tried = [t for t in (self.hidden(s) for s in starts) if t is not None]
-        if not tried:
-            return steps
-        free = final if not final.tied else self.known.get((final.names, False), final)
-        best = min(tried, key=lambda t: t.criterion)
-        if gain(free, best) < demanded(self.bench):
-            return steps
-        best, dropped = self.prune(self.settle(best))
-        added = next((n for n in best.names if self.bench.laws[n].states), None)
-        first = Step(base, None, (), steps[0].ranking, steps[0].evidence)
-        return self.forward(best, [first, Step(best, added, dropped, ())])
+        """Another path, by a law with internal states, if it explains the record and the one without does not.
 
-    def forward(self, start: Trial, steps: list[Step]) -> list[Step]:
-        """Add effects one by one, dropping those that become needless, until nothing helps any more."""
+        A law with internal states soaks up any misfit where windows are free, so only a trajectory in one piece counts.
+        """
+        base, final = steps[0].trial, steps[-1].trial
+        tried = self.hidden(base)
+        if final.names and not any(t.misfit < NOISE_FLOOR for t in tried):
+            tried += self.hidden(final)
+        for trial in sorted(tried, key=lambda t: t.criterion)[:2]:
+            if gain(self.known.get((final.names, False), final), trial) < demanded(self.bench):
+                continue
+            settled, dropped = self.prune(self.settle(trial))
+            added = next((n for n in settled.names if self.bench.laws[n].states), None)
+            if added is None:
+                continue
+            path = self.forward(settled, [replace(steps[0], trial=base), Step(settled, added, dropped, ())], MUCH)
+            if path[-1].trial.tied and (not final.tied or path[-1].trial.criterion < final.criterion - demanded(self.bench)):
+                return path
+        return steps
+
+    def swap(self, steps: list[Step]) -> tuple[list[Step], dict[tuple[str, ...], float]]:
+        """One effect of the last model after the other replaced by what else would do: the better path, and what does as well."""
+        level: dict[tuple[str, ...], float] = {}
+        final = steps[-1].trial
+        if not final.names or not final.tied:
+            return steps, level
+        for name in sorted(final.names):
+            for other in self.instead(steps, name):
+                lead = final.criterion - other.criterion
+                if lead > 0.0 and adequate(other):
+                    other = other if other.done else self.finish(other)
+                    added = next(iter(other.names - final.names))
+                    return self.swap([*steps[:-1], Step(other, added, (), ())])
+                if -lead < demanded(self.bench):
+                    level[tuple(sorted(other.names))] = other.criterion
+        return steps, level
+
+    def instead(self, steps: list[Step], name: str) -> list[Trial]:
+        """Models with another effect in the place of one, from the windows of the model kept.
+
+        A law that does as well needs no other motion than that.
+        """
+        final = steps[-1].trial
+        kept = {n: e for n, e in self.bench.effects(final).items() if n != name}
+        ranking = next((s.ranking for s in steps if s.trial.names == frozenset(kept) and s.ranking), None)
+        if ranking is None:
+            ranking = tuple(rank(self.bench, self.bench.fit(kept, final, patience=10)))
+        own = next((c.gain for c in ranking if c.name == name), 0.0)
+        near = [c for c in ranking if c.name not in final.names and c.gain > CLOSE * own][:2]
+        return [self.bench.fit({**kept, c.name: c.effect}, final, tied=True, patience=15) for c in near]
+
+    def finish(self, trial: Trial) -> Trial:
+        """The trial fitted to the end."""
+        return self._keep(self.bench.fit(self.bench.effects(trial), trial, tied=trial.tied, patience=WHOLE))
+
+    def forward(self, start: Trial, steps: list[Step], least: float) -> list[Step]:
+        """Add effects one by one, dropping those that become needless, until nothing helps any more.
+
+        ``least`` share of the misfit above noise that an addition must take away as long as a clear rest remains.
+        """
         current, steps = start, list(steps)
         while len(current.names) < MOST_EFFECTS:
             self.progress("judging absent effects" if not current.names else f"with {', '.join(sorted(current.names))}", 0.3)
@@ -177,8 +228,8 @@ class Search:
             steps[-1] = replace(steps[-1], ranking=ranking, evidence=evidence)
             if not tried:
                 break
-            name = self.best(tried)
-            if evidence[name] < demanded(self.bench):
+            name = self.best(current, tried)
+            if evidence[name] < demanded(self.bench) or self.nibbles(current, tried[name], least):
                 break
             current, dropped = self.prune(self.settle(tried[name]), spare=name)
             steps.append(Step(current, name, dropped, ()))
@@ -197,11 +248,16 @@ class Search:
             tried[c.name] = self.add(current, c)
         return tried
 
-    def best(self, tried: dict[str, Trial]) -> str:
-        """The name with the lowest criterion; of those that do as well, one that acts rather than one that only measures."""
+    def best(self, current: Trial, tried: dict[str, Trial]) -> str:
+        """The simplest of the candidates that do as well as any: fewest parameters, acting before measuring only."""
         lowest = min(t.criterion for t in tried.values())
-        level = [n for n, t in tried.items() if t.criterion - lowest < 1.0]
-        return min(level, key=lambda n: (measures_only(self.bench.laws[n]), tried[n].criterion))
+        slack = max(1.0, (1.0 - AS_WELL) * (current.criterion - lowest))
+        level = [n for n, t in tried.items() if t.criterion - lowest < slack]
+        return min(level, key=lambda n: (len(tried[n].free), measures_only(self.bench.laws[n]), tried[n].criterion))
+
+    def nibbles(self, before: Trial, after: Trial, least: float) -> bool:
+        """Whether an addition takes away only little of a misfit of which a clear rest remains."""
+        return excess(after) > UNEXPLAINED and excess(before) - excess(after) < least * excess(before)
 
     def prune(self, trial: Trial, spare: str | None = None) -> tuple[Trial, tuple[str, ...]]:
         """The model without the effects it no longer needs."""
@@ -217,17 +273,23 @@ class Search:
             trial = self.settle(self.without(trial, name))
             dropped.append(name)
 
-    def hidden(self, start: Trial) -> Trial | None:
-        """The best model with a law that has internal states beside those of ``start``, if it is worth it."""
-        best: Trial | None = None
-        for name in (n for n, law in self.bench.laws.items() if law.states and n not in start.names):
+    def hidden(self, start: Trial) -> list[Trial]:
+        """Models with a law that has internal states beside those of ``start``, one law of a family unless that falls short."""
+        found: list[Trial] = []
+        absent = {n: law for n, law in self.bench.laws.items() if law.states and n not in start.names}
+        for name in sorted(absent, key=lambda n: len(specs(absent[n]()))):
+            family = absent[name].family
+            kin = [t for t in found if family and any(absent[n].family == family for n in t.names - start.names)]
+            if any(t.misfit < ADEQUATE or t.misfit > 0.7 * start.misfit for t in kin):
+                continue
             self.progress(f"trying {name}", 0.6)
-            for effect in self.bench.quick.choose(start.system, start.free, self.bench.laws[name].guesses(start.system), keep=2):
+            guesses = self.bench.laws[name].guesses(start.system)
+            for effect in self.bench.quick.choose(start.system, start.free, guesses, keep=2):
                 effects: dict[str, AbstractEffect] = {**self.bench.effects(start), name: effect}
-                trial = self._keep(self.bench.fit(effects, start, tied=False))
-                if best is None or trial.criterion < best.criterion:
-                    best = trial
-        return best
+                found.append(self._keep(self.bench.fit(effects, start, tied=False)))
+                if found[-1].misfit < NOISE_FLOOR:
+                    return found
+        return found
 
     def _keep(self, trial: Trial) -> Trial:
         key = (trial.names, trial.tied)

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..fitting import Fit
-from .candidates import rank
-from .search import CLOSE, Search, Step, demanded
 from .workbench import Trial, Workbench
 
 NEAR_NOISE = 1.05
@@ -44,23 +42,3 @@ def judge_rest(bench: Workbench, final: Trial, fits: list[Fit]) -> Verdict:
         text += f" with {named} added" if named else ""
         text += ", and no effect in the catalogue explains the rest."
     return Verdict(bool(complete), text)
-
-
-def alternatives(search: Search, path: list[Step]) -> tuple[tuple[str, ...], ...]:
-    """Other sets of as many effects whose criterion is as good, within what chance may do."""
-    final = path[-1].trial
-    if not final.names or not final.tied:
-        return ()
-    bench, found = search.bench, {}
-    for name in final.names:
-        kept = {n: e for n, e in bench.effects(final).items() if n != name}
-        ranking = next((s.ranking for s in path if s.trial.names == frozenset(kept)), None)
-        if ranking is None:
-            ranking = tuple(rank(bench, bench.fit(kept, final, patience=10)))
-        own = next((c.gain for c in ranking if c.name == name), 0.0)
-        for c in [c for c in ranking if c.name not in final.names and c.gain > CLOSE * own][:2]:
-            # From the windows of the model kept: another law that does as well needs no other motion.
-            other = bench.fit({**kept, c.name: c.effect}, final, tied=True, patience=12)
-            if other.criterion - final.criterion < demanded(bench):
-                found[tuple(sorted(other.names))] = other.criterion
-    return tuple(sorted(found, key=lambda names: found[names]))
