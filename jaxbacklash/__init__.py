@@ -5,9 +5,14 @@ Importing this package changes nothing global. The fits need double precision: c
 
 from .criticism import Findings as Findings
 from .criticism import Latent as Latent
+from .criticism import Ranked as Ranked
+from .criticism import Ranking as Ranking
+from .criticism import Refinement as Refinement
 from .criticism import Surface as Surface
 from .criticism import explain_torque as explain_torque
 from .criticism import missing_torque as missing_torque
+from .criticism import rank_effects as rank_effects
+from .criticism import refine as refine
 from .criticism import where_it_fails as where_it_fails
 from .effects import AsymmetricGap as AsymmetricGap
 from .effects import Contact as Contact

@@ -134,6 +134,35 @@ def diagnose(
     )  # fmt: skip
 
 
+@app.command(epilog="Example: jaxbacklash refine run1.csv --heldout run2.csv --inertia 3.16 --out found1")
+def refine(
+    record: Annotated[Path, typer.Argument(help="A record: CSV, npz or mat")],
+    heldout: Heldout = None,
+    inertia: Inertia = None,
+    model: Annotated[str, typer.Option("--model", help="joint, linear, free, or a model file FILE.toml to start from")] = "joint",
+    laws: Laws = None,
+    out: Out = None,
+    json: Json = False,
+    columns: Columns = None,
+    unit: Unit = None,
+    scale: Scale = None,
+    resample: Resample = False,
+    resample_rate: ResampleRate = None,
+    window: Window = 0.2,
+    translation: Translation = False,
+    seed: Seed = 0,
+) -> None:
+    """Find the effects a record needs beyond the base model, add them one by one, and say what is left."""
+    from .commands import refine as command
+    from .commands.common import load_laws
+
+    load_laws(laws)
+    command.run(
+        record, heldout=heldout, inertia=inertia, model=model, out=out, as_json=json, columns=columns, unit=unit, scale=scale,
+        resample=resample_rate or resample, window=window, translational=translation, seed=seed,
+    )  # fmt: skip
+
+
 @app.command(
     epilog="Example: jaxbacklash simulate fit1/model.toml --excitation chirp:amplitude=0.07,f0=0,f1=12 --out sim.csv"
 )
@@ -175,7 +204,7 @@ def demo(
     out: Annotated[Path, typer.Option("--out", help="Folder for what the demo makes")] = Path("jaxbacklash-demo"),
     json: Json = False,
 ) -> None:
-    """Fit the record that ships with the package, and see where the base model fails."""
+    """Find what is hidden in the record that ships with the package: fit, see where it fails, add it, watch the error fall."""
     from .commands import demo as command
 
     command.run(out=out, as_json=json)

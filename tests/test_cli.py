@@ -96,6 +96,25 @@ MISTAKES = {
     "record to write has no known ending": (["simulate", "good.toml", "--duration", "1", "--out", "a.docx"], ".docx"),
     "bad mapping": (["fit", "rec.csv", "--columns", "t:time"], "--columns"),
     "transmitted torque only": (["fit", "torque.csv"], "motion of the link"),
+    "diagnose without a record": (["diagnose"], "record"),
+    "diagnose two records": (["diagnose", "rec.csv", "rec.csv"], "rec.csv"),
+    "diagnose an unknown model": (["diagnose", "rec.csv", "--model", "cubic"], "--model cubic"),
+    "diagnose an unknown effect": (["diagnose", "rec.csv", "--effects", "gravty"], "gravty"),
+    "diagnose with a window too long": (["diagnose", "rec.csv", "--window", "60"], "--window 60"),
+    "diagnose with both inertias": (["diagnose", "rec.csv", "--model", "good.toml", "--inertia", "3"], "--inertia"),
+    "diagnose a transmitted torque": (["diagnose", "torque.csv"], "motion of the link"),
+    "refine without a record": (["refine"], "record"),
+    "refine with an effect": (["refine", "rec.csv", "--effects", "gravity"], "--effects"),
+    "refine an unknown model": (["refine", "rec.csv", "--model", "cubic"], "--model cubic"),
+    "refine a model file that is missing": (["refine", "rec.csv", "--model", "nothere.toml"], "nothere.toml"),
+    "refine with both inertias": (["refine", "rec.csv", "--model", "good.toml", "--inertia", "3"], "--inertia"),
+    "refine with a negative inertia": (["refine", "rec.csv", "--inertia", "-3"], "--inertia -3"),
+    "refine with a window too short": (["refine", "rec.csv", "--window", "0.001"], "--window 0.001"),
+    "refine with a held-out record that is missing": (["refine", "rec.csv", "--heldout", "nothere.csv"], "nothere.csv"),
+    "refine with a held-out record of another kind": (["refine", "rec.csv", "--heldout", "torque.csv"], "two of a kind"),
+    "refine into a file": (["refine", "rec.csv", "--out", "rec.csv"], "rec.csv"),
+    "refine with laws that are missing": (["refine", "rec.csv", "--laws", "nothere.py"], "nothere.py"),
+    "refine a transmitted torque": (["refine", "torque.csv"], "motion of the link"),
 }  # fmt: skip
 
 
@@ -218,7 +237,7 @@ def test_an_effect_of_ones_own(call, joint, tmp_path):
 
 
 def test_help_has_an_example(call):
-    for command in ("fit", "compare", "simulate", "demo"):
+    for command in ("fit", "compare", "diagnose", "refine", "simulate", "demo"):
         code, out, _ = call(command, "--help")
         assert code == 0
         assert "Example: jaxbacklash" in " ".join(out.split())

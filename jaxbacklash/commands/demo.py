@@ -6,11 +6,10 @@ import json
 from importlib import resources
 from pathlib import Path
 
-from ..effects import Gravity
-from ..fitting import fit as fit_records
+from ..criticism import refine
 from ..records import Record, read_record
 from .common import out_folder, progress
-from .fit import deliver
+from .refine import deliver
 
 
 def shipped() -> tuple[Record, Record, float]:
@@ -22,18 +21,15 @@ def shipped() -> tuple[Record, Record, float]:
 
 
 def run(*, out: Path, as_json: bool) -> None:
-    """Fit the shipped record with the base model, see that it fails, add what is hidden in it, and see the error fall."""
+    """Run the whole loop on the shipped record: fit the base model, see where it fails, add what is hidden, check, report."""
     folder = out_folder(out)
     assert folder is not None
     record, heldout, inertia = shipped()
     with progress(as_json) as tell:
         if not as_json:
-            print("1. The base model, backlash + stiffness + damping, on a record of a hanging link:\n")
-        base = fit_records(record, inertia=inertia, heldout=heldout, progress=tell)
-        deliver(base, out_folder(folder / "base-model"), False, tell, silent=as_json)
-        if not as_json:
-            print("\n2. The same with the weight of the link (--effects gravity):\n")
-        full = fit_records(record, inertia=inertia, effects=[Gravity(0.0)], heldout=heldout, progress=tell)
-        deliver(full, folder, as_json, tell)
+            print("A link behind a loose joint, its base shaken; one physical effect is hidden in the record. The base model")
+            print("is backlash, stiffness and damping. What else does the record need? This takes about a minute.\n", flush=True)
+        found = refine(record, heldout=heldout, inertia=inertia, progress=tell)
+        deliver(found, folder, as_json, tell)
     if not as_json:
-        print(f"\nOpen {folder}/base-model/report.html to see where the base model fails, then {folder}/report.html.")
+        print(f"\nOpen {folder}/report.html to see where the base model fails and how the error falls.")

@@ -8,13 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from .. import __version__
-from ..criticism import Findings, where_it_fails
+from ..criticism import Findings, Ranking, rank_effects, where_it_fails
+from ..criticism.ranking import table
 from ..errors import BadInput
 from ..fitting import Fit
 from ..fitting import fit as fit_records
 from ..fitting.setup import add_effects
 from ..model_file import dump_model, load_model
 from ..report.diagnose_report import diagnose_report
+from ..report.refine_result import candidates_json
 from ..report.result import as_json as result_of
 from ..system import System
 from .common import json_text, names, out_folder, progress, read, write_text
@@ -56,8 +58,10 @@ def run(
         )  # fmt: skip
         tell("looking for the missing torque", 0.88)
         found = where_it_fails(fit)
+        tell("judging absent effects", 0.92)
+        ranking = rank_effects(fit, window=window)
         words = shlex.join(["jaxbacklash", *sys.argv[1:]])
-        result = diagnosis(fit, found, command_line=words)
+        result = diagnosis(fit, found, ranking, command_line=words)
         if folder is not None:
             tell("drawing the report", 0.95)
             write_text(folder / "result.json", json_text(result))
@@ -70,23 +74,23 @@ def run(
     if as_json:
         sys.stdout.write(json_text(result))
         return
-    print(text(fit, found))
+    print(text(fit, found, ranking))
     if folder is not None:
         print(f"written: {folder}/result.json, model.toml, report.html")
 
 
-def diagnosis(fit: Fit, found: Findings, *, command_line: str = "") -> dict[str, Any]:
-    """The whole result of ``diagnose``: a fit's, with the findings and the missing torque."""
+def diagnosis(fit: Fit, found: Findings, ranking: Ranking, *, command_line: str = "") -> dict[str, Any]:
+    """The whole result of ``diagnose``: a fit's, with the findings, the missing torque and the ranking of absent effects."""
     result = result_of(fit, command="diagnose", command_line=command_line, version=__version__)
     result |= found.as_json()
     result["verdict"] = "complete" if found.adequate else "incomplete"
     result["verdict_text"] = " ".join(found.sentences[:2])
-    # The ranking of absent effects belongs here: result["stages"][0]["candidates"], best first.
+    result["stages"][0]["candidates"] = candidates_json(ranking)
     return result
 
 
-def text(fit: Fit, found: Findings) -> str:
-    """What a person reads: the findings, then a table of what was asked."""
+def text(fit: Fit, found: Findings, ranking: Ranking) -> str:
+    """What a person reads: the findings, then tables of what was asked and of what each absent effect would bring."""
     lines = [fit.records[0].summary(), *found.sentences]
     if found.surface is not None:
         lines += ["", "what the missing torque depends on, alone or in pairs: share explained out of sample"]
@@ -95,7 +99,10 @@ def text(fit: Fit, found: Findings) -> str:
         lines += [f"  {d.label:<31} {d.of:<14} {d.strength:8.2f}  {_chance(d.p)}" for d in found.dependences[:8]]
         lines += ["", "the fit's parameters, as fitted and beside the missing torque"]
         lines += [f"  {name:<24} {a:12.6g} {b:12.6g}" for name, (a, b) in found.surface.moved.items()]
-        # The ranking of absent effects is printed here.
+    if found.adequate:
+        return "\n".join(lines)
+    lines += ["", f"what one more effect would bring ({ranking.current:.3g} now); add one with fit --effects NAME"]
+    lines += table(ranking)
     return "\n".join(lines)
 
 

@@ -4,6 +4,9 @@ from .failures import Dependence as Dependence
 from .latent import Latent as Latent
 from .latent import missing_torque as missing_torque
 from .latent import missing_torque_of as missing_torque_of
+from .ranking import Ranked as Ranked
+from .ranking import Ranking as Ranking
+from .ranking import rank_effects as rank_effects
 from .refine import Refinement as Refinement
 from .refine import Stage as Stage
 from .refine import refine as refine

@@ -9,7 +9,14 @@ from ..criticism import Findings, Surface
 from ..criticism.surface import LABELS
 from ..effects.learned import UNITS
 from ..fitting import Fit
-from .figures import missing_torque_curve, missing_torque_in_time, missing_torque_surface, to_svg, where_it_fails
+from .figures import (
+    candidate_ranking,
+    missing_torque_curve,
+    missing_torque_in_time,
+    missing_torque_surface,
+    to_svg,
+    where_it_fails,
+)
 from .fit_report import pictures, series
 from .html import Panel, write_report
 
@@ -20,9 +27,23 @@ def diagnose_report(fit: Fit, found: Findings, result: dict[str, Any], path: Pat
     """Write the page of a diagnosis."""
     panels = [
         *failure_panels(found, fit.translational),
+        *_ranking(result["stages"][0], found.adequate),
         *pictures(fit.system, fit.records[0], fit.score, fit.noise[0], fit.translational, fit.per_inertia),
     ]
     write_report(path, result, panels, series(fit.records[0], fit.score, fit.translational))
+
+
+def _ranking(stage: dict[str, Any], adequate: bool) -> list[Panel]:
+    """What each absent effect would bring; nothing beside a model that lacks none."""
+    if adequate or not stage["candidates"]:
+        return []
+    drawn = candidate_ranking(stage["candidates"], current=stage["rms_over_noise"])
+    sentence = "What the error would become with one effect added; evidence allows for the parameters an effect brings."
+    detail = (
+        "Predicted from the sensitivities of the fitted model, at the best strength and shape of each effect; nothing was "
+        "fitted anew. Adding one by name (fit --effects) or letting refine do it shows what is true of it."
+    )
+    return [Panel("Which effect is missing?", sentence, to_svg(drawn), "ranking", detail)]
 
 
 def failure_panels(found: Findings, translational: bool = False) -> list[Panel]:

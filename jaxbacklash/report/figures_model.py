@@ -84,7 +84,9 @@ def candidate_ranking(candidates: Sequence[Mapping[str, Any]], *, current: float
     lowest = min([*known, 0.8]) * 0.9 if spread else 0.0
     for place, (entry, value) in enumerate(zip(kept, values)):
         if is_number(value):
-            ax.barh(place, float(value) - lowest, left=lowest, height=0.62, color=MODEL if place == 0 else GAP, lw=0)
+            told: Any = entry.get("evidence")
+            best = place == 0 and not (is_number(told) and told <= 0.0)
+            ax.barh(place, float(value) - lowest, left=lowest, height=0.62, color=MODEL if best else GAP, lw=0)
         else:
             ax.annotate(str(entry.get("why") or "not evaluated"), (0.0, place), xycoords=("axes fraction", "data"),
                         xytext=(4, 0), textcoords="offset points", va="center", fontsize=8)  # fmt: skip
@@ -150,8 +152,9 @@ def misfit_profile(bins: Any, values: Any, counts: Any, *, xlabel: str) -> Figur
 
 def stage_name(stage: Mapping[str, Any], number: int) -> str:
     """What a stage did, short enough for an axis: ``base model``, ``+ gravity``, ``− preload``."""
-    added, dropped = stage.get("added"), stage.get("dropped")
-    parts = [f"{sign} {name}" for sign, name in (("+", added), ("−", dropped)) if name]
+    added, dropped = stage.get("added"), stage.get("dropped") or []
+    gone = [dropped] if isinstance(dropped, str) else list(dropped)
+    parts = ([f"+ {added}"] if added else []) + [f"− {name}" for name in gone]
     text = "\n".join(parts) or ("base model" if number == 0 else "fitted again")
     return text.replace("_", "_\n", 1) if len(text) > 14 else text
 

@@ -53,7 +53,10 @@ def render(result: Mapping[str, Any], figures: Sequence[Panel], series: Mapping[
     panels = []
     for panel in figures:
         anchor = _anchor(panel.anchor or panel.title, taken)
-        panels.append({"panel": panel, "anchor": anchor, "picture": _picture(panel, anchor)})
+        panels.append({"panel": panel, "anchor": anchor, "picture": _picture(panel, anchor), "closer": False})
+    if panels:
+        # The zoomable view follows the picture it enlarges, wherever that stands.
+        next((entry for entry in panels if entry["anchor"] == "figure-model"), panels[0])["closer"] = True
     colours = {"measured": MEASURED, "model": MODEL, "heldout": HELDOUT, "gap": GAP}
     data = None if series is None else Markup(series_json(series))
     return _template().render(**summarise(result), panels=panels, series=data, colours=colours)

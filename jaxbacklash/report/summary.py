@@ -24,7 +24,8 @@ def summarise(result: Entry) -> dict[str, Any]:
         "command": str(result.get("command") or ""),
         "name": PurePosixPath(path.replace("\\", "/")).name or path,
         "verdict": str(result.get("verdict") or ""),
-        "verdict_text": str(result.get("verdict_text") or ""),
+        # The page says the verdict's word itself, so a sentence need not begin with it.
+        "verdict_text": str(result.get("verdict_text") or "").removeprefix("Incomplete: ").removeprefix("Complete: "),
         "findings": [str(sentence) for sentence in result.get("findings") or []],
         "tiles": _tiles(stages),
         "parameters": parameter_rows(stages),
@@ -33,6 +34,7 @@ def summarise(result: Entry) -> dict[str, Any]:
         "scores": _scores(stages[-1]) if stages else [],
         "candidates": candidate_tables(stages),
         "alternatives": [" + ".join(map(str, names)) for names in result.get("alternatives") or [] if names],
+        "alternatives_text": str(result.get("alternatives_text") or ""),
         "cross_check": cross_check_table(result.get("cross_check"), stages[-1] if stages else {}),
         "facts": list(facts(result, record, path, stages)),
         "per_inertia": bool(result.get("per_inertia")),
@@ -83,7 +85,7 @@ def stage_rows(stages: Sequence[Entry]) -> list[dict[str, Any]]:
             {
                 "name": stage_name(stage, number).replace("_\n", "_").replace("\n", " "),
                 "scores": [text for _, text in _scores(stage)],
-                "values": [brief(found.get(name), unit=False) for name in BASE],
+                "values": [(brief(found.get(name), unit=False), _step((stage.get("moved") or {}).get(name))) for name in BASE],
             }
         )
     return rows
@@ -148,6 +150,16 @@ def _stage_heads(stages: Sequence[Entry]) -> list[str]:
         units = [str(found[name].get("unit") or "") for found in map(parameters_of, stages) if name in found]
         heads.append(with_unit(LABELS[name], units[0] if units else ""))
     return heads
+
+
+def _step(step: Any) -> str:
+    """How far a parameter moved at a stage."""
+    if not isinstance(step, Mapping):
+        return ""
+    percent, errors = step.get("percent"), step.get("stderrs")
+    said = [f"{percent:+.2g} %"] if is_number(percent) else []
+    said += [f"{errors:+.2g} s.e."] if is_number(errors) else []
+    return ", ".join(said)
 
 
 def _moved(before: Entry | None, after: Entry) -> str:

@@ -1,0 +1,119 @@
+"""``jaxbacklash refine``."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+import warnings
+from pathlib import Path
+from typing import Any
+
+from .. import __version__
+from ..criticism import Findings, Refinement, where_it_fails
+from ..criticism import refine as refine_record
+from ..criticism.ranking import plain
+from ..errors import BadInput, NoAnswer
+from ..model_file import dump_model, load_model
+from ..report.refine_result import refinement_json
+from ..system import System
+from .common import json_text, out_folder, progress, read, write_text
+
+WORTH_A_TABLE = 0.3
+"""Share of the missing torque that a table must predict out of sample before it is offered as a stopgap."""
+
+
+def run(
+    path: Path,
+    *,
+    heldout: Path | None,
+    inertia: float | None,
+    model: str,
+    out: Path | None,
+    as_json: bool,
+    columns: list[str] | None,
+    unit: list[str] | None,
+    scale: list[str] | None,
+    resample: float | bool,
+    window: float,
+    translational: bool,
+    seed: int,
+) -> None:
+    """Read, find the missing effects, print; write the result, the model and the report when a folder is given."""
+    if not 0.02 <= window <= 10.0:
+        raise BadInput(f"--window {window:g}: wanted a length between 0.02 and 10 s")
+    record = read(path, columns, unit, scale, resample)
+    held = read(heldout, columns, unit, scale, resample) if heldout is not None else None
+    folder = out_folder(out)
+    system = _given(model, inertia)
+    with progress(as_json) as tell:
+        found = refine_record(
+            record, heldout=held, model=model if system is None else "joint", inertia=inertia, system=system, window=window,
+            translational=translational, seed=seed, progress=tell,
+        )  # fmt: skip
+        deliver(found, folder, as_json, tell)
+
+
+def _given(model: str, inertia: float | None) -> System | None:
+    """The joint of a model file, None for a model by name."""
+    if not model.endswith(".toml"):
+        return None
+    if inertia is not None:
+        raise BadInput("--inertia: the model file already states the inertia; give one of the two")
+    full = load_model(model)
+    if full.effects:
+        known = ", ".join(sorted(full.effects))
+        warnings.warn(
+            f"{model}: its effects ({known}) are not taken for granted, only its joint is; they are looked for again",
+            stacklevel=2,
+        )
+    return System(full.inertia, full.contact, full.damper, {}, full.observed)
+
+
+def deliver(found: Refinement, folder: Path | None, machine: bool, tell: Any) -> None:
+    """Print a refinement and write result.json, model.toml and report.html into the folder."""
+    fit = found.fit
+    last = None if found.verdict.complete else _look(found, -1, tell)
+    words = shlex.join(["jaxbacklash", *sys.argv[1:]])
+    result = refinement_json(found, last, command_line=words, version=__version__)
+    written = ["result.json", "model.toml", "report.html"]
+    if folder is not None:
+        first = last if len(found.stages) == 1 else _look(found, 0, tell)
+        tell("drawing the report", 0.97)
+        write_text(folder / "result.json", json_text(result))
+        about = {"translational": fit.translational, "per_inertia": fit.per_inertia}
+        title = f"{fit.records[0].summary()}\n{result['verdict_text']}"
+        write_text(folder / "model.toml", dump_model(fit.system, heading=title, **about))
+        if last is not None and last.surface is not None and last.surface.share > WORTH_A_TABLE:
+            stopgap = last.surface.system.with_effects(last.surface.effect())
+            title += "\nThe learned torque is a table read from this record: a stopgap, not physics."
+            write_text(folder / "model-with-learned-torque.toml", dump_model(stopgap, heading=title, **about))
+            written.insert(2, "model-with-learned-torque.toml")
+        from ..report.refine_report import refine_report  # pictures bring matplotlib, for which a plain run need not wait
+
+        refine_report(found, result, folder / "report.html", first=first, last=last)
+    if machine:
+        sys.stdout.write(json_text(result))
+        return
+    print(text(found, last))
+    if folder is not None:
+        print(f"written: {folder}/{', '.join(written)}")
+
+
+def text(found: Refinement, last: Findings | None) -> str:
+    """What a person reads: the loop's report, and where an incomplete model still fails."""
+    if last is None:
+        return str(found)
+    lines = [str(found), "", "where it still fails", *(f"  {sentence}" for sentence in last.sentences)]
+    if last.surface is not None and last.surface.share > WORTH_A_TABLE:
+        lines.append("  With --out, model-with-learned-torque.toml holds that torque as a table: a stopgap, not physics.")
+    return "\n".join(lines)
+
+
+def _look(found: Refinement, stage: int, tell: Any) -> Findings | None:
+    """Where one of the models fails; None where that cannot be told."""
+    tell("looking for the missing torque", 0.94)
+    try:
+        return where_it_fails(plain(found.stages[stage].fit))
+    except NoAnswer as error:
+        warnings.warn(f"where the model fails cannot be told: {error}", stacklevel=2)
+        return None

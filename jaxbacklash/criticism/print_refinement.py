@@ -1,0 +1,114 @@
+"""What the loop found, as a person reads it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from ..fitting.print_fit import line
+from .ranking import of_stage, table
+
+if TYPE_CHECKING:
+    from ..fitting import Fit
+    from .refine import Refinement, Stage
+
+JOINT = {"backlash": "b", "stiffness": "k", "damping": "c"}
+
+
+@dataclass(frozen=True)
+class Moved:
+    """How far a parameter moved from one model to the next: in percent, and in the standard errors it had before; None where
+    there is no number."""
+
+    percent: float | None
+    stderrs: float | None
+
+
+def moved(before: Fit, after: Fit) -> dict[str, Moved]:
+    """How far play, stiffness and damping moved when an effect came in."""
+    found = {}
+    for name in JOINT:
+        old, new = before.parameters.get(name), after.parameters.get(name)
+        if old is None or new is None or old.value is None or new.value is None:
+            continue
+        step = new.value - old.value
+        percent = 100.0 * step / abs(old.value) if old.value else None
+        found[name] = Moved(percent, step / old.stderr if old.stderr else None)
+    return found
+
+
+def text(refinement: Refinement) -> str:
+    """The whole report: verdict, stages, parameters, alternatives, the first and the last ranking."""
+    stages, fit = refinement.stages, refinement.fit
+    lines = [refinement.verdict.text, "", fit.records[0].summary(), *noise_lines(fit), "", *_stages(stages), ""]
+    if fit.per_inertia:
+        lines.append("no inertia was given: stiffness, damping and torques are per unit inertia")
+    lines.append("parameters, value +- standard error, and 95 % interval")
+    for estimate in fit.parameters.values():
+        ends = estimate.ci95
+        shown = line(estimate)
+        lines.append(f"{shown:<72} {ends[0]:.6g} to {ends[1]:.6g}" if ends is not None else shown)
+    lines += ["", alternatives_sentence(refinement)]
+    for number in sorted({0, len(stages) - 1}, reverse=True):
+        following = stages[number + 1] if number + 1 < len(stages) else None
+        ranking = of_stage(stages[number], following)
+        if ranking.entries:
+            have = ", ".join(sorted(stages[number].fit.system.effects)) or "the base model"
+            lines += ["", f"what one more effect would bring to {have} ({ranking.current:.3g} now)", *table(ranking, 5)]
+    return "\n".join(lines)
+
+
+def noise_lines(fit: Fit) -> list[str]:
+    """The noise found in the record's channels."""
+    unit = "m" if fit.translational else "rad"
+    moved_by = fit.input_noise[0]
+    more = f", of {fit.records[0].input_name or 'x'} {moved_by:.3g} {unit}" if moved_by else ""
+    return [f"  noise of {fit.records[0].observed_name} {fit.noise[0]:.3g} {unit}{more}"]
+
+
+def alternatives_sentence(refinement: Refinement) -> str:
+    """Which other explanations the record cannot rule out."""
+    if not refinement.effects:
+        return "No effect was added."
+    if not refinement.verdict.complete:
+        return "Alternatives were not looked for, since something is missing still."
+    if not refinement.alternatives:
+        return "No other set of effects as small explains the record as well."
+    other = "; or ".join(" + ".join(names) for names in refinement.alternatives)
+    return f"This record cannot tell {' + '.join(refinement.effects)} from: {other}. Another excitation may."
+
+
+def _stages(stages: tuple[Stage, ...]) -> list[str]:
+    names = [_name(stage) for stage in stages]
+    wide = max(map(len, names)) + 2
+    held = any(stage.fit.heldout is not None for stage in stages)
+    head = f"  {'stage':<{wide}} {'rms/noise':>10}" + (f" {'held out':>10}" if held else "")
+    lines = [head + "   what play b, stiffness k and damping c did"]
+    for name, stage, old in zip(names, stages, (None, *stages[:-1])):
+        row = f"  {name:<{wide}} {stage.fit.score.rms:>10.3g}"
+        if held:
+            row += f" {stage.fit.heldout.rms:>10.3g}" if stage.fit.heldout is not None else f" {'':>10}"
+        lines.append(row + ("" if old is None else "   " + _moves(moved(old.fit, stage.fit))))
+    return lines
+
+
+def _name(stage: Stage) -> str:
+    return ("base model" if stage.added is None else f"+ {stage.added}") + "".join(f" - {gone}" for gone in stage.dropped)
+
+
+def _moves(found: dict[str, Moved]) -> str:
+    said = []
+    for name, step in found.items():
+        words = JOINT[name]
+        if step.percent is not None:
+            words += f" {step.percent:+.2g} %"
+        if step.stderrs is not None:
+            words += f" ({step.stderrs:+.2g} s.e.)"
+        said.append(words)
+    return ", ".join(said)
+
+
+def steps(stages: tuple[Stage, ...]) -> list[dict[str, Moved]]:
+    """How far the joint's parameters moved at each stage; nothing at the first."""
+    return [{}, *(moved(a.fit, b.fit) for a, b in pairwise(stages))]

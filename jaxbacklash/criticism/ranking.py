@@ -1,0 +1,182 @@
+"""The ranking of absent effects as a person reads it: the error with each added, and how strongly the record speaks for it."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import jax.numpy as jnp
+import numpy as np
+
+from ..fitting import Fit, Score
+from ..fitting.fit import SCORE_WINDOW
+from ..fitting.setup import make_problem
+from ..fitting.shooting import Unknowns
+from ..mechanics import AbstractEffect
+from ..parameters import specs, values
+from ..precision import require_double_precision
+from ..system import System
+from .candidates import Candidate, rank
+from .refine import Stage
+from .search import WHOLE, Search
+from .workbench import Workbench
+
+
+@dataclass(frozen=True)
+class Ranked:
+    """An absent effect.
+
+    Attributes: ``name``; ``effect`` at its predicted (if ``refitted``, its ranked) values; ``predicted_rms_over_noise`` the
+    prediction error with it; ``evidence`` the fall of the information criterion, more is better and below 0 speaks against
+    it, found by a refit where ``refitted`` is True and predicted otherwise; ``why`` in words; ``moved`` values of the model's
+    own parameters that would go with it.
+    """
+
+    name: str
+    effect: AbstractEffect
+    predicted_rms_over_noise: float
+    evidence: float
+    refitted: bool
+    why: str
+    moved: dict[str, float]
+
+    def __str__(self) -> str:
+        known = values(self.effect)
+        told = [f"{n} = {known[n]:.3g} {'' if s.unit == '1' else s.unit}".rstrip() for n, s in specs(self.effect).items()]
+        return f"{self.name}: {', '.join(told)}"
+
+
+@dataclass(frozen=True)
+class Ranking:
+    """Absent effects, best first; ``current`` rms over noise of the model as it is."""
+
+    entries: tuple[Ranked, ...]
+    current: float
+
+    def __iter__(self) -> Iterator[Ranked]:
+        return iter(self.entries)
+
+    def __len__(self) -> int:
+        return len(self.entries)
+
+    def __getitem__(self, index: int) -> Ranked:
+        return self.entries[index]
+
+    def __str__(self) -> str:
+        return "\n".join(table(self))
+
+
+def table(ranking: Ranking, most: int = 10) -> list[str]:
+    """Lines of the ranking's best."""
+    lines = [f"  {'effect':<22} {'rms/noise with it':>18} {'evidence':>10}"]
+    for entry in ranking.entries[:most]:
+        how = "refitted" if entry.refitted else "predicted"
+        lines.append(f"  {entry.name:<22} {entry.predicted_rms_over_noise:>18.3g} {entry.evidence:>10.0f}  {how}")
+    return lines
+
+
+def rank_effects(fit: Fit, *, window: float = SCORE_WINDOW) -> Ranking:
+    """Every effect of the catalogue that a fitted model lacks, judged at the first of its records, best first.
+
+    Parameters
+    ----------
+    fit : a fit
+    window : length of the windows whose error is quoted, as in the fit [s]
+
+    Raises
+    ------
+    RuntimeError
+        JAX is in single precision.
+    """
+    require_double_precision("rank_effects")
+    full = fit.system
+    bare = System(full.inertia, full.contact, full.damper, {}, full.observed)
+    own = tuple(name for name in fit.free if name.partition(".")[0] not in full.effects)
+    bench = Workbench(fit.records[0], bare, own, window)
+    trial = Search(bench).settle(bench.fit(dict(full.effects), joint=full, patience=WHOLE))
+    return judged(fit.score, trial.cost, rank(bench, trial))
+
+
+def of_stage(stage: Stage, following: Stage | None = None) -> Ranking:
+    """The ranking at a stage of the loop; ``following`` is the stage that came of it, None for the last."""
+    found = judged(stage.fit.score, stage.fit.cost, stage.ranking, stage.evidence)
+    chosen = None if following is None else following.added
+    if chosen is None or following is None:
+        return found
+    known = {entry.name: entry for entry in found}
+    if chosen not in known and chosen in following.fit.system.effects:
+        # A law with states of its own has no sensitivity at its null value: it was fitted outright.
+        after = following.fit
+        effect = after.system.effects[chosen]
+        known[chosen] = Ranked(
+            chosen, effect, after.score.rms, _measured(stage.fit.score, after.score, effect), True,
+            "has a state of its own, so it was fitted outright", {},
+        )  # fmt: skip
+    if chosen in known:
+        first = dataclasses.replace(known.pop(chosen), why="added at the next stage")
+        return Ranking((first, *known.values()), found.current)
+    return found
+
+
+def judged(score: Score, cost: float, ranking: Sequence[Candidate], evidence: Mapping[str, float] | None = None) -> Ranking:
+    """Candidates in units a person knows.
+
+    Parameters
+    ----------
+    score : of the model as it is
+    cost : half the sum of squares that the candidates' gains refer to
+    ranking : from `candidates.rank`
+    evidence : of those that were really refitted, by name
+    """
+    evidence = evidence or {}
+    now, rows = correlation(score), score.residual.size
+    whole = max(2.0 * cost, 1e-300)
+    entries = []
+    for c in ranking:
+        # Candidates predict the misfit of short windows; the quoted error has the same share of its excess over noise removed.
+        left = max(whole - c.gain, 0.0) / whole
+        before = c.predicted**2 / left if left > 0.0 else 1.0
+        share = float(np.clip((c.predicted**2 - 1.0) / (before - 1.0), 0.0, 1.0)) if before > 1.05 else 1.0
+        error = np.sqrt(1.0 + share * (score.rms**2 - 1.0)) if before > 1.05 else score.rms * np.sqrt(left)
+        added = sum(not spec.fixed for spec in specs(c.effect).values())
+        spread = max(1.0, c.predicted**2) * (1.0 + (now - 1.0) * share)
+        predicted = (c.gain - added * np.log(rows)) / spread
+        refitted = c.name in evidence
+        why = "refitted" if refitted else "predicted from sensitivities, not refitted"
+        if not refitted and c.gain <= 0.0:
+            why = "its strength would have to leave the range that physics allows"
+        entries.append(
+            Ranked(c.name, c.effect, float(error), float(evidence.get(c.name, predicted)), refitted, why, dict(c.moved))
+        )
+    return Ranking(tuple(sorted(entries, key=lambda e: -e.evidence)), score.rms)
+
+
+def correlation(score: Score) -> float:
+    """How many neighbouring samples of a residual count for one, inside half a score window; 1 for noise."""
+    times = score.window_times
+    length = score.residual.size
+    if len(times) > 1:
+        length = max(8, round(0.5 * float(times[1] - times[0]) / float(score.t[1] - score.t[0])))
+    rows = score.residual[: score.residual.size // length * length].reshape(-1, length)
+    energy = max(float(np.sum(rows**2)), 1e-300)
+    lags = [float(np.sum(rows[:, k:] * rows[:, :-k])) / energy for k in range(1, length // 2)]
+    first = next((k for k, rho in enumerate(lags) if rho <= 0.0), len(lags))
+    return max(1.0, 1.0 + 2.0 * sum(lags[:first]))
+
+
+def _measured(before: Score, after: Score, effect: AbstractEffect) -> float:
+    """Evidence for an effect from the prediction errors without and with it."""
+    rows = after.residual.size
+    added = sum(not spec.fixed for spec in specs(effect).values())
+    fall = rows * (before.rms**2 - after.rms**2) - added * np.log(rows)
+    return float(fall / (max(1.0, after.rms**2) * correlation(after)))
+
+
+def plain(fit: Fit) -> Fit:
+    """A stage's fit without the absent laws that the loop carries along at their null values, for `where_it_fails`."""
+    if fit.problem is None or fit.unknowns is None:
+        return fit
+    problem = make_problem(fit.system, fit.problem.windows, fit.free, tie=float(fit.problem.tie))
+    unknowns = Unknowns(jnp.zeros(len(fit.free)), fit.unknowns.starts, fit.unknowns.coefficients)
+    return dataclasses.replace(fit, problem=problem, unknowns=unknowns)

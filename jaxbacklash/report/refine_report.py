@@ -1,0 +1,110 @@
+"""The page of the loop: the error falling, the ranking with evidence, where the first and the last model fail, the joint."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ..criticism import Findings, Refinement
+from .diagnose_report import failure_panels
+from .figures import candidate_ranking, error_by_stage, residual_in_time, to_svg
+from .fit_report import pictures, series
+from .html import Panel, write_report
+
+TELLING = 0.1
+"""Share of the missing torque that coordinates must explain before its picture over them is worth looking at."""
+
+
+def refine_report(
+    refinement: Refinement, result: dict[str, Any], path: Path, *, first: Findings | None = None, last: Findings | None = None
+) -> None:
+    """Write the page of a refinement.
+
+    Parameters
+    ----------
+    refinement, result : what the loop found, and the same as result.json
+    path : the file to write
+    first, last : where the first and the last model fail; None of a model that explains the record
+    """
+    fit = refinement.fit
+    joint = {panel.anchor: panel for panel in pictures(
+        fit.system, fit.records[0], fit.score, fit.noise[0], fit.translational, fit.per_inertia
+    )}  # fmt: skip
+    panels = [_errors(result), *_rankings(result["stages"], refinement.verdict.complete)]
+    if first is not None:
+        panels += _failures(first, "the base model", "base", fit.translational)
+    if len(refinement.stages) > 1 or first is None:
+        have = " + ".join(["the base model", *refinement.effects])
+        panels += _failures(last, have, "last", fit.translational) if last is not None else [_rest(refinement, have)]
+    panels += [joint[name] for name in ("model", "force", "phase") if name in joint]
+    write_report(path, result, panels, series(fit.records[0], fit.score, fit.translational))
+
+
+def _errors(result: dict[str, Any]) -> Panel:
+    held = any(stage.get("heldout_rms_over_noise") is not None for stage in result["stages"])
+    where = ", on this record and on the held-out one, which no parameter was fitted to" if held else ""
+    return Panel(
+        "Prediction error, stage by stage",
+        f"Each stage adds the effect that the record speaks for most; 1 means that noise alone is left{where}.",
+        to_svg(error_by_stage(result["stages"])),
+        "error",
+    )
+
+
+def _rankings(stages: list[dict[str, Any]], complete: bool) -> list[Panel]:
+    """The first ranking, and the last of a model that still misses something; all of them stand in the tables."""
+    panels = []
+    for number in sorted({0, len(stages) - 1} if not complete else {0}):
+        stage = stages[number]
+        if not stage["candidates"]:
+            continue
+        have = " + ".join(["the base model", *stage["effects"]])
+        if number + 1 < len(stages):
+            sentence = (
+                f"What the error would become with one effect added to {have}; the first bar is the effect that was added. "
+                "Evidence allows for the parameters an effect brings: above 10 is strong, below 0 speaks against it."
+            )
+        else:
+            sentence = f"What one more effect would bring to {have}: no evidence is strong enough to add any."
+        drawn = candidate_ranking(stage["candidates"], current=stage["rms_over_noise"])
+        panels.append(ranking_panel(f"What is missing in {have}?", sentence, drawn, number))
+    return panels
+
+
+def ranking_panel(title: str, sentence: str, drawn: Any, number: int = 0) -> Panel:
+    """The picture of a ranking."""
+    return Panel(
+        title, sentence, to_svg(drawn), f"ranking-{number}",
+        "Bars show the prediction error that the sensitivities of the fitted model predict, at the best strength and shape of "
+        "each effect. The most telling ones are then fitted for real, and the evidence of those is what that fit found; "
+        "a predicted evidence can be too high, since predictions are linear.",
+    )  # fmt: skip
+
+
+def _failures(found: Findings, have: str, anchor: str, translational: bool) -> list[Panel]:
+    """The pictures of what one model misses, told apart from another model's by their titles."""
+    empty = set() if found.significant or found.surface is None else {"fails"}
+    if found.surface is not None and found.surface.share < TELLING:
+        empty.add("depends")
+    panels = [panel for panel in failure_panels(found, translational) if panel.anchor not in empty]
+    told = " ".join(found.sentences)
+    return [
+        Panel(
+            f"{panel.title}: {have}", told if number == 0 else panel.sentence, panel.figure_svg, f"{anchor}-{panel.anchor}",
+            panel.detail if number else f"{panel.sentence} {panel.detail or ''}",
+        )
+        for number, panel in enumerate(panels)
+    ]  # fmt: skip
+
+
+def _rest(refinement: Refinement, have: str) -> Panel:
+    """What a model leaves that explains the record."""
+    score = refinement.fit.score
+    drawn = residual_in_time(score.t, score.residual, window_edges=score.window_times, window_rms=score.window_rms)
+    return Panel(
+        f"What is left: {have}",
+        f"The median window is off by {score.median:.3g} times the noise, all windows by {score.rms:.3g}; noise alone would "
+        "stay within two noises and hang together nowhere.",
+        to_svg(drawn),
+        "last-residual",
+    )

@@ -1,0 +1,89 @@
+"""The loop's findings as result.json, and a ranking of absent effects as its entry ``candidates``."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ..criticism import Findings, Refinement
+from ..criticism.print_refinement import Moved, alternatives_sentence, steps
+from ..criticism.ranking import Ranking, of_stage
+from ..effects import Contact
+from ..errors import BadInput, NoAnswer
+from ..fitting import Fit
+from ..fitting.equation_error import estimate
+from .result import as_json as fit_json
+from .result import cross_check, finite
+from .result import stage as stage_json
+
+
+def candidates_json(ranking: Ranking) -> list[dict[str, Any]]:
+    """The entry ``candidates`` of a stage, best first."""
+    return [
+        {
+            "name": entry.name,
+            "predicted_rms_over_noise": finite(entry.predicted_rms_over_noise),
+            "evidence": finite(entry.evidence),
+            "refitted": entry.refitted,
+            "why": entry.why,
+        }
+        for entry in ranking
+    ]
+
+
+def refinement_json(
+    refinement: Refinement, findings: Findings | None = None, *, command_line: str = "", version: str = ""
+) -> dict[str, Any]:
+    """The whole result of ``refine``.
+
+    Parameters
+    ----------
+    refinement : what the loop found
+    findings : where the last model still fails, told of a model that is incomplete
+    command_line, version : for the record
+    """
+    fit, stages = refinement.fit, refinement.stages
+    result = fit_json(fit, command="refine", command_line=command_line, version=version)
+    result.pop("starts")  # the loop fits from one start, which its quick look has chosen
+    followed = [*stages[1:], None]
+    result["stages"] = [
+        stage_json(stage.fit, stage.added)
+        | {
+            "dropped": list(stage.dropped),
+            "moved": {name: _moved_json(step) for name, step in step_of.items()},
+            "candidates": candidates_json(of_stage(stage, following)),
+        }
+        for stage, following, step_of in zip(stages, followed, steps(stages))
+    ]
+    result["model"] = stages[0].fit.model
+    result["alternatives"] = [list(names) for names in refinement.alternatives]
+    result["alternatives_text"] = alternatives_sentence(refinement)
+    result["verdict"] = refinement.verdict.word
+    result["verdict_text"] = refinement.verdict.text
+    result["cross_check"] = _checked(fit)
+    result["seconds"] = {name: round(float(value), 4) for name, value in refinement.seconds.items()}
+    if findings is not None:
+        result |= findings.as_json()
+    return result
+
+
+def _moved_json(step: Moved) -> dict[str, float | None]:
+    return {"percent": finite(step.percent), "stderrs": finite(step.stderrs)}
+
+
+def _checked(fit: Fit) -> dict[str, Any]:
+    """The equation-error estimate, with the effects that were found in its regression, beside the fit."""
+    if fit.start is None or not fit.system.effects:
+        return cross_check(fit)
+    inertia = None if "inertia" in fit.free else float(fit.system.inertia)
+    play, spring = isinstance(fit.system.contact, Contact), fit.system.contact is not None
+    try:
+        with np.errstate(all="ignore"):
+            start = estimate(
+                fit.records[0], inertia=inertia, play=play, spring=spring, effects=list(fit.system.effects.values())
+            )
+    except (BadInput, NoAnswer, np.linalg.LinAlgError, ValueError) as error:
+        return {"agrees": None, "why": f"the equation-error estimate failed: {error}"}
+    return cross_check(replace(fit, start=start))
