@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..fitting.fit import ADEQUATE, silent
+from ..fitting.fit import silent
 from ..mechanics import AbstractEffect
 from ..parameters import specs
 from .candidates import Candidate, rank
@@ -27,7 +27,7 @@ CLEAR = 8.0
 """An effect that stands so many standard errors from zero need not be left out to see that it is missed."""
 UNEXPLAINED = 0.02
 """Reduced chi-square above 1 that is too much for an error of the estimated noise."""
-LITTLE, MUCH, MOST = 0.05, 0.25, 0.5
+LITTLE, MUCH, MOST = 0.1, 0.25, 0.5
 """Share of the excess that an addition must take away where a rest stays unexplained: at least; as long as laws with
 internal states have not been tried; and if it is an effect of the measuring chain."""
 WHOLE = 60
@@ -58,7 +58,7 @@ def gain(before: Trial, after: Trial) -> float:
 
 def explained(trial: Trial) -> bool:
     """Whether a model leaves nothing but noise, as far as the noise is known."""
-    return trial.tied and trial.misfit < NOISE_FLOOR
+    return trial.misfit < NOISE_FLOOR
 
 
 def excess(trial: Trial) -> float:
@@ -74,7 +74,8 @@ def measures_only(law: type[AbstractEffect]) -> bool:
 def significance(trial: Trial, name: str) -> float:
     """How many standard errors the strongest strength of an effect of the model stands from its null value."""
     size = np.sqrt(np.maximum(np.diag(trial.schur), 1e-300))
-    inverse = np.linalg.pinv(trial.schur / np.outer(size, size), rcond=1e-14, hermitian=True)
+    # What only a sum determines must come out uncertain, not as a pseudo-inverse has it.
+    inverse = np.linalg.inv(trial.schur / np.outer(size, size) + 1e-12 * np.eye(size.size))
     errors = np.sqrt(np.maximum(np.diag(inverse), 1e-300)) / size * trial.scales
     errors *= np.sqrt(max(1.0, trial.misfit**2) * trial.correlation)
     described = specs(trial.system.effects[name])
@@ -188,13 +189,17 @@ class Search:
         for name in sorted(final.names):
             for other in self.instead(steps, name):
                 lead = final.criterion - other.criterion
-                if lead > 0.0 and adequate(other):
+                if lead > (demanded(self.bench) if self.only_measures(other, final) else 2.0) and adequate(other):
                     other = other if other.done else self.finish(other)
                     added = next(iter(other.names - final.names))
                     return self.swap([*steps[:-1], Step(other, added, (), ())])
                 if -lead < demanded(self.bench):
                     level[tuple(sorted(other.names))] = other.criterion
         return steps, level
+
+    def only_measures(self, other: Trial, final: Trial) -> bool:
+        """Whether what is new in a model is of the measuring chain alone."""
+        return all(measures_only(self.bench.laws[n]) for n in other.names - final.names)
 
     def instead(self, steps: list[Step], name: str) -> list[Trial]:
         """Models with another effect in the place of one, from the windows of the model kept.
@@ -280,7 +285,7 @@ class Search:
         for name in sorted(absent, key=lambda n: len(specs(absent[n]()))):
             family = absent[name].family
             kin = [t for t in found if family and any(absent[n].family == family for n in t.names - start.names)]
-            if any(t.misfit < ADEQUATE or t.misfit > 0.7 * start.misfit for t in kin):
+            if any(t.misfit < NOISE_FLOOR for t in kin):
                 continue
             self.progress(f"trying {name}", 0.6)
             guesses = self.bench.laws[name].guesses(start.system)

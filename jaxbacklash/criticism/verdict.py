@@ -28,7 +28,7 @@ class Verdict:
 def judge_rest(bench: Workbench, final: Trial, fits: list[Fit]) -> Verdict:
     """Whether the last model leaves nothing but noise."""
     first, last = fits[0], fits[-1]
-    complete = final.tied and final.misfit < NEAR_NOISE and last.score.median < 1.1
+    complete = final.misfit < NEAR_NOISE and last.score.median < 1.1
     named = ", ".join(sorted(final.names))
     if complete and not final.names:
         text = f"The joint's play, stiffness and damping explain the record: what is left is noise ({last.score.rms:.2f} of it)."

@@ -15,7 +15,7 @@ import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from ..fitting.fit import ADEQUATE, freedom, prepare, tie_windows
+from ..fitting.fit import ADEQUATE, TIES, freedom, prepare, tie_windows
 from ..fitting.levenberg import ArrowLevenbergMarquardt, minimise
 from ..fitting.setup import first_guess, free_names, make_problem
 from ..fitting.shooting import Problem, Unknowns
@@ -141,7 +141,11 @@ class Workbench:
             unknowns = Unknowns(unknowns.theta, own, start.unknowns.coefficients)
         self.fits += 1
         if tied:
-            problem, solution, _ = tie_windows(problem, unknowns, (100.0,), limit=patience)
+            problem, solution, _ = tie_windows(problem, unknowns, TIES[0], limit=patience)
+            if patience > PATIENCE and 2.0 * float(solution.stats["state"].blocks.cost) > ADEQUATE**2 * freedom(
+                solution.value, self.windows, tied=True
+            ):
+                problem, solution, _ = tie_windows(problem, unknowns, TIES[1], limit=patience)
         else:
             solution = minimise(problem, unknowns, ArrowLevenbergMarquardt(limit=patience, atol=0.1, rtol=ENOUGH))
         return self._trial(problem, solution, frozenset(effects), free, tied, patience)
