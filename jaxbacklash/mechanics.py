@@ -79,7 +79,8 @@ class AbstractEffect(eqx.Module):
     Class attributes: ``states`` names of internal states; ``port`` where the torque acts, ``"joint"`` (between link and
     base, so it is part of the transmitted torque) or ``"ground"``; ``family`` a name shared by laws that data often
     cannot tell apart; ``catalogued`` False keeps a law out of the search for missing effects; ``slides`` True for dry
-    friction, whose torque is ``dry`` against the direction of sliding at its port.
+    friction, whose torque is ``dry`` against the direction of sliding at its port; ``absorbs`` names of simpler laws that this
+    one contains, so that it takes their place instead of standing beside them (parameters of one name are then the same).
     """
 
     states: ClassVar[tuple[str, ...]] = ()
@@ -87,6 +88,7 @@ class AbstractEffect(eqx.Module):
     family: ClassVar[str | None] = None
     catalogued: ClassVar[bool] = True
     slides: ClassVar[bool] = False
+    absorbs: ClassVar[tuple[str, ...]] = ()
 
     @classmethod
     def guesses(cls, system: Any) -> list[AbstractEffect]:

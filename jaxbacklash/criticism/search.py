@@ -9,7 +9,7 @@ import numpy as np
 
 from ..fitting.fit import silent
 from ..mechanics import AbstractEffect
-from ..parameters import specs
+from ..parameters import specs, values, with_values
 from .candidates import Candidate, rank
 from .workbench import Trial, Workbench, adequate, strengths
 
@@ -109,12 +109,18 @@ class Search:
         self.progress("fitting the joint alone", 0.1)
         return self.settle(self._keep(self.bench.fit({}, patience=WHOLE)))
 
-    def add(self, before: Trial, effect: Candidate) -> Trial:
-        """The model with one more effect, fitted as the model before was: tied or free."""
-        key = (before.names | {effect.name}, before.tied)
+    def add(self, before: Trial, candidate: Candidate) -> Trial:
+        """The model with one more effect, in place of simpler laws it contains, fitted as the model before was: tied or free."""
+        present = self.bench.effects(before)
+        effect = candidate.effect
+        for name in type(effect).absorbs:
+            if name in present:
+                simpler = values(present.pop(name))
+                taken = max(abs(simpler[n]) for n in strengths(self.bench.laws[name]()))
+                effect = with_values(effect, {n: values(effect)[n] + taken for n in strengths(effect)})
+        key = (frozenset(present) | {candidate.name}, before.tied)
         if key not in self.known:
-            effects = {**self.bench.effects(before), effect.name: effect.effect}
-            self._keep(self.bench.fit(effects, before, tied=before.tied))
+            self._keep(self.bench.fit({**present, candidate.name: effect}, before, tied=before.tied))
         return self.known[key]
 
     def without(self, before: Trial, name: str) -> Trial:
@@ -208,12 +214,21 @@ class Search:
         """
         final = steps[-1].trial
         kept = {n: e for n, e in self.bench.effects(final).items() if n != name}
+        simpler = [self.simplified(final, name, other) for other in self.bench.laws[name].absorbs]
         ranking = next((s.ranking for s in steps if s.trial.names == frozenset(kept) and s.ranking), None)
         if ranking is None:
             ranking = tuple(rank(self.bench, self.bench.fit(kept, final, patience=10)))
         own = next((c.gain for c in ranking if c.name == name), 0.0)
         near = [c for c in ranking if c.name not in final.names and c.gain > CLOSE * own][:2]
-        return [self.bench.fit({**kept, c.name: c.effect}, final, tied=True, patience=15) for c in near]
+        near = [c for c in near if c.name not in self.bench.laws[name].absorbs]
+        return simpler + [self.bench.fit({**kept, c.name: c.effect}, final, tied=True, patience=15) for c in near]
+
+    def simplified(self, final: Trial, name: str, other: str) -> Trial:
+        """The model with a law reduced to a simpler one that it contains."""
+        effects = self.bench.effects(final)
+        shared = {n: v for n, v in values(effects.pop(name)).items() if n in specs(self.bench.laws[other]())}
+        effects[other] = with_values(self.bench.laws[other](), shared)
+        return self._keep(self.bench.fit(effects, final, tied=final.tied, patience=WHOLE))
 
     def finish(self, trial: Trial) -> Trial:
         """The trial fitted to the end."""

@@ -71,6 +71,7 @@ class Stribeck(AbstractEffect):
     vs: Scalar = param(unit="rad/s", default=0.1, lower=1e-3, scale=0.1)
     width: Scalar = param(unit="rad/s", default=1e-3, lower=0.0, fixed=True, label="regularisation of the sign")
     slides: ClassVar[bool] = True
+    absorbs: ClassVar[tuple[str, ...]] = ("coulomb_joint",)
     family: ClassVar[str | None] = "dry friction"
 
     @classmethod
