@@ -4,8 +4,9 @@
 
 Every record has its own random rig, excitation (chirp, multisine, stepped or modulated sine), strengths, and on every
 third an encoder with counts of three noises; the simulation is non-smooth and shares nothing with the package. Each
-effect hides alone, and some in pairs and triples; some records hide nothing, some an effect outside the catalogue. A set counts as
-identifiable when every effect in it stands 6 standard errors from zero in a fit of the true model. It needs numba.
+effect hides alone, and some in pairs and triples; some records hide nothing, some an effect outside the catalogue. A
+set counts as identifiable when every effect in it stands 6 standard errors from zero in a fit of the true model. It needs
+numba.
 """
 
 from __future__ import annotations
@@ -99,10 +100,7 @@ def judge(case: Case, found: Refinement, seconds: float) -> dict[str, Any]:
         inside[name] = bool(ci is not None and ci[0] <= value <= ci[1])
     unknown = bool(set(case.hidden) & set(OUTSIDE_CATALOGUE))
     exact = family(found.effects) == family(case.hidden)
-    if unknown:
-        right = not found.verdict.complete
-    else:
-        right = exact
+    right = not found.verdict.complete if unknown else exact
     return {
         "number": case.number, "hidden": list(case.hidden), "kind": case.kind, "found": list(found.effects),
         "alternatives": [list(a) for a in found.alternatives], "verdict": found.verdict.word, "right": right,
@@ -119,18 +117,19 @@ def table(rows: list[dict[str, Any]]) -> str:
     sure = [r for r in named if r["identifiable"]]
     known = [r for r in rows if not set(r["hidden"]) & set(OUTSIDE_CATALOGUE)]
     cover = [v for r in known for v in r["inside"].values()]
+    share = lambda some: f"{sum(r['right'] for r in some)} of {len(some)}"  # noqa: E731
     lines = [
-        f"exact sets {sum(r['right'] for r in named)} of {len(named)}; of the identifiable {sum(r['right'] for r in sure)} of {len(sure)}",
-        f"clean records left alone {sum(r['right'] for r in clean)} of {len(clean)}; unknown admitted {sum(r['right'] for r in unknown)} of {len(unknown)}",
+        f"exact sets {share(named)}; of the identifiable {share(sure)}",
+        f"clean records left alone {share(clean)}; unknown admitted {share(unknown)}",
         f"95 % intervals of play, stiffness, damping that hold the truth: {sum(cover)} of {len(cover)}",
         f"median time {np.median([r['seconds'] for r in rows]):.1f} s",
     ]
-    for r in rows:
-        if not r["right"]:
-            lines.append(
-                f"  {r['number']:3d} {r['kind']:10s} {'+'.join(r['hidden']) or 'nothing'} -> {'+'.join(r['found']) or 'nothing'} "
-                f"({r['verdict']}; alternatives {r['alternatives']}; identifiable {r['identifiable']}; rms {r['rms'][0]:.2f} -> {r['rms'][-1]:.2f})"
-            )
+    for r in (r for r in rows if not r["right"]):
+        names = "+".join(r["hidden"]) or "nothing", "+".join(r["found"]) or "nothing"
+        lines.append(
+            f"  {r['number']:3d} {r['kind']:10s} {names[0]} -> {names[1]} ({r['verdict']}; alternatives {r['alternatives']}; "
+            f"identifiable {r['identifiable']}; rms {r['rms'][0]:.2f} -> {r['rms'][-1]:.2f})"
+        )
     return "\n".join(lines)
 
 
@@ -153,7 +152,8 @@ def main() -> None:
             begin = time.perf_counter()
             found = refine(case.record, inertia=case.rig.inertia)
             rows.append(judge(case, found, time.perf_counter() - begin))
-            print(number, "+".join(case.hidden), "->", "+".join(found.effects), found.verdict.word, f"{rows[-1]['seconds']:.1f} s", flush=True)
+            words = number, "+".join(case.hidden), "->", "+".join(found.effects), found.verdict.word
+            print(*words, f"{rows[-1]['seconds']:.1f} s", flush=True)
         print(f"\nnoise x{noise:g}, {options.duration:g} s\n{table(rows)}\n", flush=True)
         everything[f"{noise:g}"] = rows
     if options.out is not None:
