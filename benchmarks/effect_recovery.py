@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 
 from jaxbacklash.criticism.refine import Refinement, refine
-from jaxbacklash.criticism.search import significance
+from jaxbacklash.criticism.evidence import significance
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.mechanics import catalogue

@@ -124,7 +124,7 @@ def refine(
     stages = tuple(Stage(s.added, s.dropped, judged(s.trial), s.ranking, s.evidence) for s in steps)
     clock["score"] = time.perf_counter()
     others = tuple(sorted(search.level, key=lambda names: search.level[names]))
-    verdict = judge_rest(bench, steps[-1].trial, [s.fit for s in stages])
+    verdict = judge_rest(steps[-1].trial, [s.fit for s in stages])
     marks = list(clock.items())
     seconds = {name: at - before for (_, before), (name, at) in pairwise(marks)}
     return Refinement(stages, others, verdict, seconds)

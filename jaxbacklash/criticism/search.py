@@ -5,28 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-import numpy as np
-
 from ..fitting.fit import silent
 from ..mechanics import AbstractEffect
 from ..parameters import specs, values, with_values
 from .candidates import Candidate, rank
+from .evidence import NOISE_FLOOR, UNEXPLAINED, demanded, excess, explained, gain, measures_only, significance
 from .workbench import Trial, Workbench, adequate, strengths
 
 MOST_EFFECTS = 5
 """A model with more effects than this is no explanation any more."""
 TRIED = 4
 """Candidates that are really refitted at every stage."""
-NOISE_FLOOR = 1.03
-"""Root of the reduced chi-square of a tied fit up to which what is left counts as noise."""
 CLOSE, HOPEFUL = 0.9, 0.2
 """Predicted gain, as a share of the best candidate's, that earns a refit: once noise is reached, and before."""
 AS_WELL = 0.98
 """Share of the best candidate's gain that counts as doing as well: then the simpler law is taken."""
 CLEAR = 8.0
 """An effect that stands so many standard errors from zero need not be left out to see that it is missed."""
-UNEXPLAINED = 0.02
-"""Reduced chi-square above 1 that is too much for an error of the estimated noise."""
 LITTLE, MUCH, MOST = 0.1, 0.25, 0.5
 """Share of the excess that an addition must take away where a rest stays unexplained: at least; as long as laws with
 internal states have not been tried; and if it is an effect of the measuring chain."""
@@ -44,46 +39,6 @@ class Step:
     dropped: tuple[str, ...]
     ranking: tuple[Candidate, ...]
     evidence: dict[str, float] = field(default_factory=dict)
-
-
-def demanded(bench: Workbench) -> float:
-    """The fall of the criterion that an addition must bring: as many candidates as there are had their chance to fool us."""
-    return 2.0 * float(np.log(max(len(bench.laws), 2)))
-
-
-def gain(before: Trial, after: Trial) -> float:
-    """Evidence for ``after``: fall of the criterion, scaled down where what remains is larger than noise or correlated."""
-    return (before.criterion - after.criterion) / (max(1.0, after.misfit**2) * after.correlation)
-
-
-def explained(trial: Trial) -> bool:
-    """Whether a model leaves nothing but noise, as far as the noise is known."""
-    return trial.misfit < NOISE_FLOOR
-
-
-def excess(trial: Trial) -> float:
-    """By how much the reduced chi-square exceeds that of noise."""
-    return max(trial.misfit**2 - 1.0, 0.0)
-
-
-def measures_only(law: type[AbstractEffect]) -> bool:
-    """True for what happens in the measuring chain, which exerts no torque and leaves the play alone."""
-    return law.torque is AbstractEffect.torque and law.reshape is AbstractEffect.reshape
-
-
-def significance(trial: Trial, name: str) -> float:
-    """How many standard errors the strongest strength of an effect of the model stands from its null value."""
-    size = np.sqrt(np.maximum(np.diag(trial.schur), 1e-300))
-    # What only a sum determines must come out uncertain, not as a pseudo-inverse has it.
-    inverse = np.linalg.inv(trial.schur / np.outer(size, size) + 1e-12 * np.eye(size.size))
-    errors = np.sqrt(np.maximum(np.diag(inverse), 1e-300)) / size * trial.scales
-    errors *= np.sqrt(max(1.0, trial.misfit**2) * trial.correlation)
-    described = specs(trial.system.effects[name])
-    found = [
-        abs(trial.value[full] - (described[n].null or 0.0)) / max(errors[trial.free.index(full)], 1e-300)
-        for n in strengths(trial.system.effects[name]) if (full := f"{name}.{n}") in trial.free
-    ]  # fmt: skip
-    return float(max(found, default=0.0))
 
 
 class Search:

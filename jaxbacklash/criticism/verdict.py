@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..fitting import Fit
-from .workbench import Trial, Workbench
+from .workbench import Trial
 
 NEAR_NOISE = 1.05
 """Root of the reduced chi-square of a tied fit up to which what is left counts as noise, since the noise itself is estimated."""
-WHITE = 1.3
-"""Samples of the residual that count for one, up to which it counts as white."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +23,7 @@ class Verdict:
         return "complete" if self.complete else "incomplete"
 
 
-def judge_rest(bench: Workbench, final: Trial, fits: list[Fit]) -> Verdict:
+def judge_rest(final: Trial, fits: list[Fit]) -> Verdict:
     """Whether the last model leaves nothing but noise."""
     first, last = fits[0], fits[-1]
     complete = final.misfit < NEAR_NOISE and last.score.median < 1.1

@@ -1,0 +1,54 @@
+"""What counts as evidence: for an effect, for a model, for there being nothing left to find."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..mechanics import AbstractEffect
+from ..parameters import specs
+from .workbench import Trial, Workbench, strengths
+
+NOISE_FLOOR = 1.03
+"""Root of the reduced chi-square up to which what is left counts as noise, since the noise itself is estimated."""
+UNEXPLAINED = 0.02
+"""Reduced chi-square above 1 that is too much for an error of the estimated noise."""
+
+
+def demanded(bench: Workbench) -> float:
+    """The fall of the criterion that an addition must bring: as many candidates as there are had their chance to fool us."""
+    return 2.0 * float(np.log(max(len(bench.laws), 2)))
+
+
+def gain(before: Trial, after: Trial) -> float:
+    """Evidence for ``after``: fall of the criterion, scaled down where what remains is larger than noise or correlated."""
+    return (before.criterion - after.criterion) / (max(1.0, after.misfit**2) * after.correlation)
+
+
+def explained(trial: Trial) -> bool:
+    """Whether a model leaves nothing but noise, as far as the noise is known."""
+    return trial.misfit < NOISE_FLOOR
+
+
+def excess(trial: Trial) -> float:
+    """By how much the reduced chi-square exceeds that of noise."""
+    return max(trial.misfit**2 - 1.0, 0.0)
+
+
+def measures_only(law: type[AbstractEffect]) -> bool:
+    """True for what happens in the measuring chain, which exerts no torque and leaves the play alone."""
+    return law.torque is AbstractEffect.torque and law.reshape is AbstractEffect.reshape
+
+
+def significance(trial: Trial, name: str) -> float:
+    """How many standard errors the strongest strength of an effect of the model stands from its null value."""
+    size = np.sqrt(np.maximum(np.diag(trial.schur), 1e-300))
+    # What only a sum determines must come out uncertain, not as a pseudo-inverse has it.
+    inverse = np.linalg.inv(trial.schur / np.outer(size, size) + 1e-12 * np.eye(size.size))
+    errors = np.sqrt(np.maximum(np.diag(inverse), 1e-300)) / size * trial.scales
+    errors *= np.sqrt(max(1.0, trial.misfit**2) * trial.correlation)
+    described = specs(trial.system.effects[name])
+    found = [
+        abs(trial.value[full] - (described[n].null or 0.0)) / max(errors[trial.free.index(full)], 1e-300)
+        for n in strengths(trial.system.effects[name]) if (full := f"{name}.{n}") in trial.free
+    ]  # fmt: skip
+    return float(max(found, default=0.0))
