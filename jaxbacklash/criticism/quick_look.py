@@ -106,6 +106,15 @@ class QuickLook:
         """
         if len(variants) <= keep:
             return variants
+        worth = self._worth(system, free, variants)
+        return [variants[k] for k in np.argsort(-worth)[:keep]]
+
+    def share(self, system: System, free: tuple[str, ...], variants: list[AbstractEffect]) -> float:
+        """Share of what a model leaves that the likeliest shape of a law takes away, 0 to 1."""
+        return float(np.max(self._worth(system, free, variants)) ** 2)
+
+    def _worth(self, system: System, free: tuple[str, ...], variants: list[AbstractEffect]) -> np.ndarray:
+        """Correlation of each variant's torque with what the model leaves, none where physics forbids its sign."""
         left, by = self.missing(system, free)
         name = canonical_name(variants[0])
         if name not in self._columns or self._columns[name].shape[1] != len(variants):
@@ -115,11 +124,10 @@ class QuickLook:
         left, by, columns = white(left), white(by), white(columns)
         basis = np.linalg.qr(by)[0]
         left, columns = left - basis @ (basis.T @ left), columns - basis @ (basis.T @ columns)
-        size = np.linalg.norm(columns, axis=0)
+        size = np.linalg.norm(columns, axis=0) * max(float(np.linalg.norm(left)), 1e-300)
         fall = np.where(size > 0.0, columns.T @ left / np.where(size > 0.0, size, 1.0), 0.0)
         signed = np.array([fixed_sign(v) for v in variants])
-        worth = np.where(signed, np.maximum(fall, 0.0), np.abs(fall))
-        return [variants[k] for k in np.argsort(-worth)[:keep]]
+        return np.where(signed, np.maximum(fall, 0.0), np.abs(fall))
 
     def average(self, torque: np.ndarray) -> np.ndarray:
         """One or several signals (..., N) under the bump (..., R)."""

@@ -25,6 +25,8 @@ CLEAR = 8.0
 LITTLE, MUCH, MOST = 0.1, 0.25, 0.5
 """Share of the excess that an addition must take away where a rest stays unexplained: at least; as long as laws with
 internal states have not been tried; and if it is an effect of the measuring chain."""
+FAR, GLIMPSE = 2.0, 0.03
+"""Where a model is this far off, a law with internal states must show this share in the quick look to be tried."""
 WHOLE = 60
 """Linearisations allowed to a model that is kept."""
 
@@ -257,8 +259,10 @@ class Search:
             kin = [t for t in found if family and any(absent[n].family == family for n in t.names - start.names)]
             if any(t.misfit < NOISE_FLOOR for t in kin):
                 continue
-            self.progress(f"trying {name}", 0.6)
             guesses = self.bench.laws[name].guesses(start.system)
+            if start.misfit > FAR and self.bench.quick.share(start.system, start.free, guesses) < GLIMPSE:
+                continue
+            self.progress(f"trying {name}", 0.6)
             for effect in self.bench.quick.choose(start.system, start.free, guesses, keep=2):
                 effects: dict[str, AbstractEffect] = {**self.bench.effects(start), name: effect}
                 found.append(self._keep(self.bench.fit(effects, start, tied=False)))

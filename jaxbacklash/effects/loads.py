@@ -51,7 +51,7 @@ class TorqueRipple(AbstractEffect):
 
     A: Scalar = param(unit="N m", null=0.0, scale=1.0)
     N: Scalar = param(unit="1", default=20.0, lower=4.0, scale=1.0)
-    phi: Scalar = param(unit="rad", default=0.0, scale=0.1)
+    phi: Scalar = param(unit="1", default=0.0, scale=0.1)
     port: ClassVar[str] = "ground"
 
     @classmethod
