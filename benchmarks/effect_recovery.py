@@ -20,8 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from jaxbacklash.criticism.refine import Refinement, refine
 from jaxbacklash.criticism.evidence import significance
+from jaxbacklash.criticism.refine import Refinement, refine
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.mechanics import catalogue
