@@ -29,6 +29,12 @@ def read(
     )
 
 
+def check_window(window: float) -> None:
+    """Refuse a window length [s] that no score can be quoted for."""
+    if not 0.02 <= window <= 10.0:
+        raise BadInput(f"--window {window:g}: wanted a length between 0.02 and 10 s")
+
+
 def load_laws(path: Path | None) -> None:
     """Run a file of the user's own effect classes; from then on the catalogue knows them.
 

@@ -7,12 +7,11 @@ import sys
 from pathlib import Path
 
 from .. import __version__
-from ..errors import BadInput
 from ..fitting import compare as compare_records
 from ..model_file import dump_model, load_model
 from ..report.fit_report import compare_report
 from ..report.result import comparison_json
-from .common import json_text, out_folder, progress, read, write_text
+from .common import check_window, json_text, out_folder, progress, read, write_text
 
 
 def run(
@@ -29,8 +28,7 @@ def run(
     translational: bool,
 ) -> None:
     """Read both, predict window by window, print; write the result and the report when a folder is given."""
-    if not 0.02 <= window <= 10.0:
-        raise BadInput(f"--window {window:g}: wanted a length between 0.02 and 10 s")
+    check_window(window)
     system = load_model(model)
     record = read(path, columns, unit, scale, resample)
     folder = out_folder(out)

@@ -19,7 +19,7 @@ from ..report.diagnose_report import diagnose_report
 from ..report.refine_result import candidates_json
 from ..report.result import as_json as result_of
 from ..system import System
-from .common import json_text, names, out_folder, progress, read, write_text
+from .common import check_window, json_text, names, out_folder, progress, read, write_text
 
 
 def run(
@@ -40,8 +40,7 @@ def run(
     seed: int,
 ) -> None:
     """Read, fit, find what is missing, print; write the result, the model and the report when a folder is given."""
-    if not 0.02 <= window <= 10.0:
-        raise BadInput(f"--window {window:g}: wanted a length between 0.02 and 10 s")
+    check_window(window)
     if starts < 1:
         raise BadInput(f"--starts {starts}: wanted one or more")
     record = read(path, columns, unit, scale, resample)

@@ -16,7 +16,7 @@ from ..errors import BadInput, NoAnswer
 from ..model_file import dump_model, load_model
 from ..report.refine_result import refinement_json
 from ..system import System
-from .common import json_text, out_folder, progress, read, write_text
+from .common import check_window, json_text, out_folder, progress, read, write_text
 
 WORTH_A_TABLE = 0.3
 """Share of the missing torque that a table must predict out of sample before it is offered as a stopgap."""
@@ -39,8 +39,7 @@ def run(
     seed: int,
 ) -> None:
     """Read, find the missing effects, print; write the result, the model and the report when a folder is given."""
-    if not 0.02 <= window <= 10.0:
-        raise BadInput(f"--window {window:g}: wanted a length between 0.02 and 10 s")
+    check_window(window)
     record = read(path, columns, unit, scale, resample)
     held = read(heldout, columns, unit, scale, resample) if heldout is not None else None
     folder = out_folder(out)

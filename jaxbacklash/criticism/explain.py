@@ -14,7 +14,8 @@ import jax
 import jax.numpy as jnp
 import jax.scipy.linalg as jsl
 
-from .smoother import Linear, Point, Smoother, linearise, prior, solve, torque_places
+from ..fitting.shooting import Blocks
+from .smoother import Point, Smoother, linearise, prior, solve, torque_places
 
 Array = Any
 
@@ -31,7 +32,7 @@ class Explained(eqx.Module):
 
 
 @eqx.filter_jit
-def prepare_linear(s: Smoother, at: Point) -> tuple[Linear, Any]:
+def prepare_linear(s: Smoother, at: Point) -> tuple[Blocks, Any]:
     """The chain at a point and the remainder's prior (first differences), for many calls of `explain`."""
     diagonal, below, slope, rough = prior(s, at)
     return linearise(s, at), (diagonal[1], below[1], slope[1], rough[1])
@@ -39,7 +40,7 @@ def prepare_linear(s: Smoother, at: Point) -> tuple[Linear, Any]:
 
 @eqx.filter_jit
 def explain(
-    s: Smoother, at: Point, linear: Linear, remainder: Any, phi: Array, penalty: Array, log_precisions: Array
+    s: Smoother, at: Point, linear: Blocks, remainder: Any, phi: Array, penalty: Array, log_precisions: Array
 ) -> Explained:
     """Estimate a table under the likeliest of G priors of the remainder.
 
@@ -68,7 +69,7 @@ def explain(
         border = jnp.concatenate([linear.border, -precision * pulled], axis=2)
         corner = jsl.block_diag(linear.corner, precision * gram + penalty)
         right = jnp.concatenate([linear.slope_theta, -precision * against])
-        wide = Linear(linear.diagonal, linear.below, border, corner, linear.slope, right, linear.cost)
+        wide = Blocks(linear.diagonal, linear.below, border, corner, linear.slope, right, linear.cost)
         done = solve(wide, precision * diagonal, precision * below, precision * slope)
         least = linear.cost + 0.5 * precision * rough - done.promise
         told = 0.5 * rows * log_precision - 0.5 * done.log_determinant - least

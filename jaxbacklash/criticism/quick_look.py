@@ -19,11 +19,9 @@ from scipy import linalg, signal
 from ..mechanics import AbstractEffect, Drive, canonical_name
 from ..parameters import ravel, specs, unravel
 from ..records import Record
-from ..signals import choose_intervals, fit_spline
+from ..signals import Bump, choose_intervals, fit_spline
 from ..system import System
 
-HALF_WIDTH = 0.05
-"""Half-width of the bump [s]."""
 ORDER = 8
 """Order of the autoregression that whitens the rows."""
 
@@ -62,17 +60,11 @@ class QuickLook:
     def __init__(self, record: Record) -> None:
         self.motion = motion(record)
         self._columns: dict[str, np.ndarray] = {}
-        dt = record.dt
-        reach = int(np.clip(round(HALF_WIDTH / dt), 8, record.samples // 6))
-        tau = np.arange(-reach, reach + 1) / reach
-        base = 1.0 - tau**2
-        self._bump = base**4
-        self._bump2 = (48.0 * tau**2 * base**2 - 8.0 * base**3) / (reach * dt) ** 2
-        self._stride = max(1, reach // 4)
+        self._bump = Bump(record.samples, record.dt)
         zero = np.zeros(record.samples)
         raw = record.channels[record.observed_name]
-        base = record.channels.get("x", zero) if record.observed_name == "z" else zero
-        self._acceleration = self._average(raw + base, self._bump2)
+        carried = record.channels.get("x", zero) if record.observed_name == "z" else zero
+        self._acceleration = self._bump.against(raw + carried, 2)
 
     def missing(self, system: System, free: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
         """Missing torque under the bump (R,), and how it falls with each free parameter of the model (R, q)."""
@@ -131,11 +123,7 @@ class QuickLook:
 
     def average(self, torque: np.ndarray) -> np.ndarray:
         """One or several signals (..., N) under the bump (..., R)."""
-        return self._average(torque, self._bump)
-
-    def _average(self, values: np.ndarray, bump: np.ndarray) -> np.ndarray:
-        kernel = bump[::-1].reshape((1,) * (np.ndim(values) - 1) + (-1,))
-        return signal.oaconvolve(values, kernel, mode="valid", axes=-1)[..., :: self._stride]
+        return self._bump.against(torque)
 
 
 def fixed_sign(effect: AbstractEffect) -> bool:

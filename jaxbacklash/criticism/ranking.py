@@ -20,7 +20,7 @@ from ..system import System
 from .candidates import Candidate, rank
 from .refine import Stage
 from .search import WHOLE, Search
-from .workbench import Workbench
+from .workbench import Workbench, correlation_length
 
 
 @dataclass(frozen=True)
@@ -159,10 +159,7 @@ def correlation(score: Score) -> float:
     if len(times) > 1:
         length = max(8, round(0.5 * float(times[1] - times[0]) / float(score.t[1] - score.t[0])))
     rows = score.residual[: score.residual.size // length * length].reshape(-1, length)
-    energy = max(float(np.sum(rows**2)), 1e-300)
-    lags = [float(np.sum(rows[:, k:] * rows[:, :-k])) / energy for k in range(1, length // 2)]
-    first = next((k for k, rho in enumerate(lags) if rho <= 0.0), len(lags))
-    return max(1.0, 1.0 + 2.0 * sum(lags[:first]))
+    return correlation_length(rows)
 
 
 def _measured(before: Score, after: Score, effect: AbstractEffect) -> float:

@@ -18,6 +18,7 @@ import jax.scipy.linalg as jsl
 import numpy as np
 
 from ..fitting.shooting import (
+    Blocks,
     Prediction,
     Problem,
     Trajectory,
@@ -65,19 +66,6 @@ class Smoother(eqx.Module):
         return self.hats.shape[1] - 1
 
 
-class Linear(eqx.Module):
-    """The chain and its border at a point, without the torque's prior: ``diagonal``, ``below`` (W, B, B), ``border``
-    (W, B, q), ``corner`` (q, q), ``slope`` (W, B), ``slope_theta`` (q,), ``cost``."""
-
-    diagonal: Array
-    below: Array
-    border: Array
-    corner: Array
-    slope: Array
-    slope_theta: Array
-    cost: Array
-
-
 class Improved(eqx.Module):
     """What one Gauss-Newton step found: ``point`` after the full step under the likeliest prior ``best`` = (order,
     log precision); ``evidence`` (G,) of the priors tried and ``without`` that of no torque; ``cost`` and ``rough`` (3,), the
@@ -110,7 +98,7 @@ def _locals(s: Smoother, at: Point) -> tuple[Array, Array]:
     return local_coefficients(at.unknowns.coefficients), jnp.concatenate([at.torque, following], axis=1)
 
 
-def linearise(s: Smoother, at: Point) -> Linear:
+def linearise(s: Smoother, at: Point) -> Blocks:
     """Residuals and the chain at a point, with no prior on the torque."""
     problem, u, w = s.problem, at.unknowns, s.problem.windows
     n, m, nodes, q = u.starts.shape[0], w.intervals, s.nodes, u.theta.shape[0]
@@ -154,7 +142,7 @@ def linearise(s: Smoother, at: Point) -> Linear:
     cost = blocks.cost + 0.5 * jnp.sum(ridge * apart**2) + 0.5 * jnp.sum((u.theta - s.home) * away)
     corner = blocks.corner + jnp.eye(q) / LEEWAY**2
     slope = blocks.slope + ridge * apart
-    return Linear(diagonal, blocks.below, blocks.border, corner, slope, blocks.slope_theta + away, cost)
+    return Blocks(diagonal, blocks.below, blocks.border, corner, slope, blocks.slope_theta + away, cost)
 
 
 class Solved(eqx.Module):
@@ -171,7 +159,7 @@ class Solved(eqx.Module):
     log_determinant: Array
 
 
-def solve(linear: Linear, diagonal: Array, below: Array, slope: Array) -> Solved:
+def solve(linear: Blocks, diagonal: Array, below: Array, slope: Array) -> Solved:
     """Solve the chain with its border, a prior's ``diagonal``, ``below`` and ``slope`` added."""
     factor = factorise(linear.diagonal + diagonal, linear.below + below)
     pull = linear.slope + slope

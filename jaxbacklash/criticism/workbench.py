@@ -207,10 +207,13 @@ def adequate(trial: Trial) -> bool:
 
 def _correlation(windows: Windows, predicted: np.ndarray) -> float:
     """Integrated autocorrelation of the residual inside the windows, in samples: 1 for noise, the more the model is wrong."""
-    residual = (predicted - np.asarray(windows.measured)) * np.asarray(windows.weight)
-    energy = float(np.sum(residual**2))
-    length = residual.shape[1]
-    lags = [float(np.sum(residual[:, k:] * residual[:, :-k])) / max(energy, 1e-300) for k in range(1, length // 2)]
+    return correlation_length((predicted - np.asarray(windows.measured)) * np.asarray(windows.weight))
+
+
+def correlation_length(residual: np.ndarray) -> float:
+    """Integrated autocorrelation of a residual (W, M) along its rows up to the first zero, in samples, at least 1."""
+    energy = max(float(np.sum(residual**2)), 1e-300)
+    lags = [float(np.sum(residual[:, k:] * residual[:, :-k])) / energy for k in range(1, residual.shape[1] // 2)]
     first = next((k for k, rho in enumerate(lags) if rho <= 0.0), len(lags))
     return max(1.0, 1.0 + 2.0 * sum(lags[:first]))
 

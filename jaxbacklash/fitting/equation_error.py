@@ -15,14 +15,11 @@ from typing import Any
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
-from scipy import optimize, signal
+from scipy import optimize
 
 from ..mechanics import AbstractEffect, Instant
 from ..records import Record
-from ..signals import choose_intervals, fit_spline
-
-HALF_WIDTH = 0.05
-"""Half-width of the bump [s]: shorter amplifies noise, longer blurs the contacts."""
+from ..signals import Bump, choose_intervals, fit_spline
 
 
 @dataclass(frozen=True)
@@ -140,14 +137,7 @@ class _WeakForm:
     """The record seen through the bump: one number a position of the bump, positions a quarter half-width apart."""
 
     def __init__(self, record: Record) -> None:
-        dt = record.dt
-        reach = int(np.clip(round(HALF_WIDTH / dt), 8, record.samples // 6))
-        tau = np.arange(-reach, reach + 1) / reach
-        base = 1.0 - tau**2
-        self._bump = base**4
-        self._bump1 = -8.0 * tau * base**3 / (reach * dt)
-        self._bump2 = (48.0 * tau**2 * base**2 - 8.0 * base**3) / (reach * dt) ** 2
-        self._stride = max(1, reach // 4)
+        self._bump = Bump(record.samples, record.dt)
         channels = record.channels
         zero = np.zeros(record.samples)
         x = channels.get("x", zero)
@@ -156,14 +146,14 @@ class _WeakForm:
         self._record, self._x, self._y = record, x, y
         self.stiffness = 1.0
         self._speeds: tuple[np.ndarray, np.ndarray] | None = None
-        self.acceleration = self._against(self._bump2, y)
-        self.force = self._against(self._bump, channels.get("F", zero))
+        self.acceleration = self._bump.against(y, 2)
+        self.force = self._bump.against(channels.get("F", zero))
 
     def damping(self) -> np.ndarray:
-        return -self._against(self._bump1, self.z)
+        return -self._bump.against(self.z, 1)
 
     def integrate(self, torque: np.ndarray) -> np.ndarray:
-        return self._against(self._bump, torque)
+        return self._bump.against(torque)
 
     def torque(self, effect: AbstractEffect, half_play: float) -> np.ndarray:
         """Torque of an effect on the measured motion; only laws that need speeds look at smoothed ones."""
@@ -186,6 +176,3 @@ class _WeakForm:
             dy, dx = (np.zeros_like(self._y) if f is None else f(t, 1) for f in spline)
             self._speeds = dy, dx
         return self._speeds
-
-    def _against(self, bump: np.ndarray, values: np.ndarray) -> np.ndarray:
-        return signal.oaconvolve(values, bump[::-1], mode="valid")[:: self._stride]

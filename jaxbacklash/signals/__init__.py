@@ -1,5 +1,6 @@
 """Arrays in, arrays out; knows no system."""
 
+from .bump import Bump as Bump
 from .noise import noise_level as noise_level
 from .smoothing import DEGREE as DEGREE
 from .smoothing import NEGLIGIBLE as NEGLIGIBLE

@@ -7,6 +7,7 @@ link at rest in the middle of its play is a fair initial state.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
@@ -38,11 +39,12 @@ def sine_of(phase):
     return s, c * phase[1], c * phase[2] - s * phase[1] ** 2
 
 
-class Motion:
+class Motion(ABC):
     """A motion is one method, `derivatives(t) -> (x, x', x'')`; the rest follows."""
 
+    @abstractmethod
     def derivatives(self, t):
-        raise NotImplementedError
+        """Position, speed and acceleration at times t."""
 
     def x(self, t):
         return self.derivatives(t)[0]
