@@ -5,10 +5,14 @@ Importing jaxbacklash does none of this; the command line, the benchmarks and th
 
 from __future__ import annotations
 
+import contextlib
 import os
 from pathlib import Path
 
 from .precision import enable_double_precision
+
+MOST_CORES = 8
+"""More devices than this do not speed up a fit of usual length."""
 
 
 def cache_folder() -> Path:
@@ -19,8 +23,13 @@ def cache_folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "jaxbacklash"
 
 
+def cores() -> int:
+    """Processor cores that this program may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def start(*, cache: bool = True) -> None:
-    """Switch to double precision, ask for wide vectors, and keep compiled programs for the next run."""
+    """Switch to double precision, ask for wide vectors and one device a core, and keep compiled programs for the next run."""
     import jax
 
     # XLA reads its flags when the first computation starts; wide vectors halve the time of a fit on current CPUs.
@@ -28,6 +37,8 @@ def start(*, cache: bool = True) -> None:
     if "xla_cpu_prefer_vector_width" not in flags:
         os.environ["XLA_FLAGS"] = f"{flags} --xla_cpu_prefer_vector_width=512".strip()
     enable_double_precision()
+    with contextlib.suppress(RuntimeError):  # the program has computed already: it goes on with what it has
+        jax.config.update("jax_num_cpu_devices", min(cores(), MOST_CORES))
     if not cache:
         return
     folder = cache_folder()

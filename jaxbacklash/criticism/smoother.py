@@ -119,7 +119,7 @@ def linearise(s: Smoother, at: Point) -> Blocks:
 
     predicted, tangents = jax.vmap(one, in_axes=(1, 0, 0, 0, 0))(u.starts, spline, torque, w.t0, w.force)
     motion, base, tie = residuals(problem, u, predicted)
-    sharp = tie_weights(problem, u)
+    sharp = tie_weights(problem, u.starts.shape[0])
     rows = jnp.concatenate(
         [tangents.motion * w.weight[:, None], tangents.input * w.input_weight[:, None], tangents.end * sharp[:, None]], axis=2
     )

@@ -137,12 +137,12 @@ class Workbench:
         unknowns = first_guess(problem)
         if start is not None:
             same = start.system.state_names == problem.system.state_names
-            own = start.unknowns.starts if same else unknowns.starts.at[:2].set(start.unknowns.starts[:2])
+            own = start.unknowns.starts if same else jnp.asarray(unknowns.starts).at[:2].set(start.unknowns.starts[:2])
             unknowns = Unknowns(unknowns.theta, own, start.unknowns.coefficients)
         self.fits += 1
         if tied:
             problem, solution, _ = tie_windows(problem, unknowns, TIES[0], limit=patience)
-            if patience > PATIENCE and 2.0 * float(solution.stats["state"].blocks.cost) > ADEQUATE**2 * freedom(
+            if patience > PATIENCE and 2.0 * float(solution.stats["cost"]) > ADEQUATE**2 * freedom(
                 solution.value, self.windows, tied=True
             ):
                 problem, solution, _ = tie_windows(problem, unknowns, TIES[1], limit=patience)
@@ -155,7 +155,7 @@ class Workbench:
         still = Unknowns(jnp.zeros(problem.directions.shape[1]), unknowns.starts, unknowns.coefficients)
         stats = minimise(problem, still, ArrowLevenbergMarquardt(limit=1)).stats
         scales = np.asarray(jnp.sum(problem.directions, axis=0))
-        return np.asarray(stats["schur"]), np.asarray(stats["pull"]), float(stats["state"].blocks.cost), scales
+        return np.asarray(stats["schur"]), np.asarray(stats["pull"]), float(stats["cost"]), scales
 
     def quieter(self, factor: float) -> None:
         """Take the noise of the measured channel to be ``factor`` times what it was taken for."""
@@ -167,8 +167,7 @@ class Workbench:
     def _trial(
         self, problem: Problem, solution: Any, names: frozenset[str], free: tuple[str, ...], tied: bool, patience: int
     ) -> Trial:
-        state = solution.stats["state"]
-        cost = float(state.blocks.cost)
+        cost = float(solution.stats["cost"])
         system = problem.system
         moved = np.asarray(problem.parameters(solution.value.theta))
         fitted = with_values(system, dict(zip(values(system), moved)))
@@ -181,8 +180,8 @@ class Workbench:
         return Trial(
             fitted, names, free, solution.value, cost, float(np.sqrt(2.0 * cost / count)),
             np.asarray(solution.stats["schur"]), np.asarray(solution.stats["pull"]),
-            np.asarray(jnp.sum(problem.directions, axis=0)), tied, int(state.steps) < patience, float(penalty),
-            _correlation(self.windows, np.asarray(state.predicted.motion)),
+            np.asarray(jnp.sum(problem.directions, axis=0)), tied, int(solution.stats["steps"]) < patience, float(penalty),
+            _correlation(self.windows, np.asarray(solution.stats["predicted"].motion)),
         )  # fmt: skip
 
     def effects(self, trial: Trial) -> dict[str, AbstractEffect]:

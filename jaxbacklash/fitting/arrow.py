@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 import jax.scipy.linalg as jsl
 import lineax as lx
 
+from .chunks import scan_used
 from .shooting import Blocks
 
 Array = Any
@@ -29,13 +29,14 @@ class ArrowSolution(eqx.Module):
     pull: Array
 
 
-def solve(blocks: Blocks, damping: Array) -> ArrowSolution:
+def solve(blocks: Blocks, damping: Array, used: Array | int | None = None) -> ArrowSolution:
     r"""Solve :math:`(H + \lambda\,\mathrm{diag} H)\,\Delta = -g` by elimination of the windows in order.
 
     Parameters
     ----------
     blocks : normal equations by blocks (`Blocks`)
     damping : Levenberg-Marquardt :math:`\lambda \ge 0`
+    used : windows that hold data, the first ones; default all
     """
     size = blocks.slope.shape[1]
     q = blocks.corner.shape[0]
@@ -55,7 +56,8 @@ def solve(blocks: Blocks, damping: Array) -> ArrowSolution:
         return carry, (factor, half_below, half_edge)
 
     start = (jnp.zeros((size, size)), jnp.zeros((size, q + 1)))
-    _, (factors, half_below, half_edge) = jax.lax.scan(eliminate, start, (diagonal, blocks.below, border))
+    used = jnp.asarray(blocks.slope.shape[0] if used is None else used)
+    factors, half_below, half_edge = scan_used(eliminate, start, (diagonal, blocks.below, border), used)
 
     inner = jnp.einsum("wbi,wbj->ij", half_edge, half_edge)
     schur = blocks.corner - inner[:q, :q]
@@ -72,7 +74,7 @@ def solve(blocks: Blocks, damping: Array) -> ArrowSolution:
         own = jsl.solve_triangular(factor.T, right, lower=False)
         return own, own
 
-    _, local = jax.lax.scan(back, jnp.zeros(size), (factors, half_below, half_edge), reverse=True)
+    local = scan_used(back, jnp.zeros(size), (factors, half_below, half_edge), used, reverse=True)
     return ArrowSolution(local, theta, schur, right)
 
 

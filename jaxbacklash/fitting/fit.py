@@ -180,7 +180,7 @@ def tie_windows(
     for tightness in ties:
         problem = eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(tightness))
         solution = minimise(problem, unknowns, solver)
-        unknowns, steps = solution.value, steps + int(solution.stats["state"].steps)
+        unknowns, steps = solution.value, steps + int(solution.stats["steps"])
     return problem, solution, steps
 
 
@@ -239,7 +239,7 @@ def search(
             theta = jnp.clip(jnp.asarray(shift), problem.lower, problem.upper)
             begin = eqx.tree_at(lambda u: u.theta, guess, theta)
         solution = minimise(problem, begin, solver)
-        tried.append((float(solution.stats["state"].blocks.cost), attempt, solution))
+        tried.append((float(solution.stats["cost"]), attempt, solution))
     tried = [entry for entry in tried if np.isfinite(entry[0])]
     if not tried:
         raise NoAnswer("no start led to a finite misfit: the record may hold something else than this model's motion")
@@ -248,14 +248,14 @@ def search(
     excess = max(1.0, 2.0 * cost / rows)
     agreeing = sum(entry[0] - cost < 2.0 * excess for entry in tried)
 
-    steps = int(best.stats["state"].steps)
+    steps = int(best.stats["steps"])
     tied = False
     if np.sqrt(2.0 * cost / freedom(best.value, windows)) < ADEQUATE:
         progress("tying the windows into one trajectory", 0.7)
         for ties in TIES:
             joined, solution, taken = tie_windows(problem, best.value, ties)
             steps += taken
-            after = float(solution.stats["state"].blocks.cost)
+            after = float(solution.stats["cost"])
             # Tied windows may disagree where a chaotic record and a slightly wrong model part ways; then they stay apart.
             if np.sqrt(2.0 * after / freedom(solution.value, windows, tied=True)) < ADEQUATE:
                 best, problem, cost, tied = solution, joined, after, True

@@ -18,16 +18,15 @@ _linearise = eqx.filter_jit(linearise)  # traced once, though a search writes it
 
 
 class ArrowState(eqx.Module):
-    """Where the search stands: ``blocks`` and ``predicted`` at the best point, ``damping``, ``gain`` the decrease of the cost
-    that a full Gauss-Newton step still promises, ``schur`` the information about the parameters, ``steps`` taken so far."""
+    """Where the search stands: ``blocks`` and ``predicted`` at the best point, the ``trial`` that is looked at next, ``damping``,
+    ``gain`` the decrease of the cost that the step to it promises, ``steps`` linearisations so far."""
 
     blocks: Blocks
     predicted: Prediction
+    trial: Unknowns
     damping: Array
     gain: Array
-    schur: Array
     steps: Array
-    ready: Array
 
 
 class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
@@ -49,41 +48,28 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         shapes = eqx.filter_eval_shape(_linearise, args, y)
         blocks, predicted = jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), shapes)
         blocks = eqx.tree_at(lambda b: b.cost, blocks, jnp.asarray(jnp.inf))
-        q = y.theta.shape[0]
-        return ArrowState(
-            blocks, predicted, jnp.asarray(self.damping), jnp.asarray(jnp.inf), jnp.zeros((q, q)), jnp.asarray(0),
-            jnp.asarray(False),
-        )  # fmt: skip
+        return ArrowState(blocks, predicted, y, jnp.asarray(self.damping), jnp.asarray(jnp.inf), jnp.asarray(0))
 
     def step(
         self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any
     ) -> tuple[Unknowns, ArrowState, Any]:
-        # The first call only linearises at the start: a step of zero length is always accepted.
-        solution = solve(state.blocks, state.damping)
+        blocks, predicted = _linearise(args, state.trial)
+        # The first call looks at the start, whatever it is worth.
+        better = (blocks.cost < state.blocks.cost) | (state.steps == 0)
+        pick = lambda new, old: jnp.where(better, new, old)  # noqa: E731
+        blocks = jax.tree.map(pick, blocks, state.blocks)
+        y = jax.tree.map(pick, state.trial, y)
+        damping = jnp.where(better, jnp.maximum(0.1 * state.damping, 1e-12), jnp.clip(10.0 * state.damping, 1e-7, 1e12))
+        damping = jnp.where(state.steps == 0, self.damping, damping)
+
+        solution = solve(blocks, damping, args.windows.used)
         n = y.starts.shape[0]
         theta = jnp.clip(y.theta + solution.theta, args.lower, args.upper)
         theta = jnp.where(args.shrink, _keep_sign(args, y.theta, theta), theta)
-        trial = Unknowns(
-            theta, y.starts + solution.local[:, :n].T, y.coefficients + solution.local[:, n:]
-        )
-        trial = jax.tree.map(lambda new, old: jnp.where(state.ready, new, old), trial, y)
-        blocks, predicted = _linearise(args, trial)
-        better = blocks.cost < state.blocks.cost
-        pick = lambda new, old: jnp.where(better, new, old)  # noqa: E731
-        damping = jnp.where(better, jnp.maximum(0.1 * state.damping, 1e-12), jnp.clip(10.0 * state.damping, 1e-7, 1e12))
-        damping = jnp.where(state.ready, damping, jnp.asarray(self.damping))
-        # What a Gauss-Newton step promised at the old point, damped as it was: the measure of being there.
-        promise = -0.5 * (jnp.sum(state.blocks.slope * solution.local) + jnp.sum(state.blocks.slope_theta * solution.theta))
-        new = ArrowState(
-            jax.tree.map(pick, blocks, state.blocks),
-            jax.tree.map(pick, predicted, state.predicted),
-            damping,
-            jnp.where(state.ready, promise, jnp.inf),
-            solution.schur,
-            state.steps + 1,
-            jnp.asarray(True),
-        )
-        return jax.tree.map(pick, trial, y), new, None
+        trial = Unknowns(theta, y.starts + solution.local[:, :n].T, y.coefficients + solution.local[:, n:])
+        promise = -0.5 * (jnp.sum(blocks.slope * solution.local) + jnp.sum(blocks.slope_theta * solution.theta))
+        predicted = jax.tree.map(pick, predicted, state.predicted)
+        return y, ArrowState(blocks, predicted, trial, damping, promise, state.steps + 1), None
 
     def terminate(self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any) -> Any:
         # Where the model misfits, the noise is no measure of what matters: the misfit is.
@@ -92,13 +78,14 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         small = state.gain < self.atol * jnp.maximum(1.0, 2.0 * cost / (rows + 1.0)) + self.rtol * jnp.maximum(cost - rows, 0.0)
         # A promise under heavy damping says little; wait until the damping has come down or nothing helps any more.
         done = (small & (state.damping < 1.0)) | (state.damping > 1e11) | (state.steps >= self.limit)
-        return done & state.ready, optx.RESULTS.successful
+        return done & (state.steps > 0), optx.RESULTS.successful
 
     def postprocess(
         self, fn: Any, y: Unknowns, aux: Any, args: Problem, options: Any, state: ArrowState, tags: Any, result: Any
     ) -> Any:
-        undamped = solve(state.blocks, jnp.asarray(0.0))
-        return y, aux, {"state": state, "schur": undamped.schur, "pull": undamped.pull}
+        undamped = solve(state.blocks, jnp.asarray(0.0), args.windows.used)
+        stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps}
+        return y, aux, stats | {"schur": undamped.schur, "pull": undamped.pull}
 
 
 def _keep_sign(problem: Problem, old: Array, new: Array) -> Array:
@@ -110,13 +97,19 @@ def _keep_sign(problem: Problem, old: Array, new: Array) -> Array:
     return (jnp.clip(wanted, value / 3.0, value * 3.0) - offset) / scale
 
 
-@eqx.filter_jit
 def minimise(problem: Problem, start: Unknowns, solver: ArrowLevenbergMarquardt, max_steps: int = 200) -> optx.Solution:
-    """Run the search from ``start``; the solution's ``stats`` hold the final `ArrowState`, the ``schur`` information and
-    the ``pull``, both undamped."""
+    """Run the search from ``start``; the solution's ``stats`` hold the ``cost``, what was ``predicted``, the ``steps`` taken, the
+    ``schur`` information and the ``pull``, both undamped."""
+    # As NumPy arrays: what comes back from several devices would tie all later computations to them.
+    return jax.tree.map(np.asarray, _minimise(problem, start, solver, max_steps))
+
+
+@eqx.filter_jit
+def _minimise(problem: Problem, start: Unknowns, solver: ArrowLevenbergMarquardt, max_steps: int) -> optx.Solution:
 
     def residual(y: Unknowns, args: Problem) -> Array:
         # optimistix asks only for its structure: the solver builds residuals and blocks together.
         return jnp.zeros(())
 
-    return optx.least_squares(residual, solver, start, args=problem, max_steps=max_steps, throw=False)
+    solution: optx.Solution = optx.least_squares(residual, solver, start, args=problem, max_steps=max_steps, throw=False)
+    return eqx.tree_at(lambda s: (s.state, s.result), solution, (None, None))

@@ -54,8 +54,8 @@ def interval(problem: Problem, unknowns: Unknowns, j: int, stderr: float) -> tup
     def cost(shift: float) -> float:
         base = problem.base + problem.directions[:, j] * (unknowns.theta[j] + shift / scale)
         moved = eqx.tree_at(lambda p: p.base, held, base)
-        start = Unknowns(unknowns.theta.at[j].set(0.0), unknowns.starts, unknowns.coefficients)
-        return 2.0 * float(minimise(moved, start, solver).stats["state"].blocks.cost)
+        start = Unknowns(jnp.asarray(unknowns.theta).at[j].set(0.0), unknowns.starts, unknowns.coefficients)
+        return 2.0 * float(minimise(moved, start, solver).stats["cost"])
 
     least = cost(0.0)
 

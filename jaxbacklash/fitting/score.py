@@ -67,9 +67,9 @@ def score(problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 
         tie[first : first + count] *= (index % group) != group - 1
     still = eqx.tree_at(lambda p: (p.windows.tie, p.tie), still, (jnp.asarray(tie), jnp.asarray(1.0)))
     begin = Unknowns(jnp.zeros_like(unknowns.theta), unknowns.starts, unknowns.coefficients)
-    solution = minimise(still, begin, ArrowLevenbergMarquardt(atol=0.3, damping=1e-6, limit=20))
+    solution = minimise(still, begin, ArrowLevenbergMarquardt(atol=0.03, damping=1e-6, limit=20))
     found = solution.value
-    predicted = solution.stats["state"].predicted
+    predicted = solution.stats["predicted"]
     scores = tuple(_summarise(still, found, predicted, layout, group, i) for i in range(len(layout.first)))
     return scores, Unknowns(unknowns.theta, found.starts, found.coefficients)
 

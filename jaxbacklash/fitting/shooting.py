@@ -25,6 +25,7 @@ from ..parameters import unravel
 from ..signals import DEGREE
 from ..solvers.substeps import run_panels
 from ..system import System
+from .chunks import by_chunks
 from .tangents import drive, rows, trajectories
 from .windows import Windows
 
@@ -131,22 +132,21 @@ def predict(problem: Problem, theta: Array, start: Array, local: Array, t0: Arra
 
 def predictions(problem: Problem, unknowns: Unknowns) -> Prediction:
     """Predictions of all windows, stacked on the leading axis."""
-    return _predict(problem, unknowns)[0]
+    return _predict(problem, unknowns.theta, unknowns.starts, local_coefficients(unknowns.coefficients))[0]
 
 
-def _predict(problem: Problem, unknowns: Unknowns) -> tuple[Prediction, Any, Array, Array]:
+def _predict(problem: Problem, theta: Array, starts: Array, local: Array) -> tuple[Prediction, Any, Array, Array]:
     w = problem.windows
-    system = problem.rebuild(unknowns.theta)
-    local = local_coefficients(unknowns.coefficients)
+    system = problem.rebuild(theta)
     u, du = jax.vmap(lambda c: _input(w, system.lag(), c))(local)
-    end, states = trajectories(w, system, unknowns.starts, u, du)
+    end, states = trajectories(w, system, starts, u, du)
     kept = tuple(s[:, :: w.every] for s in states)
     at = jax.vmap(jax.vmap(lambda u, du, f: drive(w, u, du, f)))(u, du, w.force)
     samples = jax.tree.map(lambda v: v[:, : -1 : w.every], at)
     times = w.t0[:, None] + w.panel * w.every * jnp.arange(w.samples)
     motion = jax.vmap(jax.vmap(system.output))(times, kept, samples)
     measured = local @ w.basis[0, : -1 : w.every].T
-    if not w.intervals:
+    if not local.shape[1]:
         measured = jnp.zeros((w.count, 0))
     return Prediction(motion, measured, end.T), states, u, du
 
@@ -192,21 +192,20 @@ def local_coefficients(coefficients: Array) -> Array:
 
 def residuals(problem: Problem, unknowns: Unknowns, predicted: Prediction | None = None) -> tuple[Array, Array, Array]:
     """Motion (W, M), input (W, M or 0) and tie (W, n) residuals in units of the noise."""
-    w = problem.windows
     p = predictions(problem, unknowns) if predicted is None else predicted
-    motion = (p.motion - w.measured) * w.weight
-    base = (p.input - w.input) * w.input_weight
     following = jnp.concatenate([unknowns.starts[:, 1:], unknowns.starts[:, :1]], axis=1).T
-    tie = (p.end - following) * tie_weights(problem, unknowns)
-    return motion, base, tie
+    return _residuals(problem.windows, p, following, tie_weights(problem, unknowns.starts.shape[0]))
 
 
-def tie_weights(problem: Problem, unknowns: Unknowns) -> Array:
-    """How sharply each window's end is tied to the next window's start, (W, n)."""
+def _residuals(w: Windows, p: Prediction, following: Array, tie_weight: Array) -> tuple[Array, Array, Array]:
+    return (p.motion - w.measured) * w.weight, (p.input - w.input) * w.input_weight, (p.end - following) * tie_weight
+
+
+def tie_weights(problem: Problem, states: int) -> Array:
+    """How sharply each window's end is tied to the next window's start, (W, n) for ``states`` = n."""
     w = problem.windows
-    extra = unknowns.starts.shape[0] - 2
     # Internal states have no common scale; a loose tie is enough for what they carry from window to window.
-    drop = jnp.concatenate([w.drop, jnp.full(extra, w.drop[1])])
+    drop = jnp.concatenate([w.drop, jnp.full(states - 2, w.drop[1])])
     return problem.tie * w.tie[:, None] * drop
 
 
@@ -215,27 +214,65 @@ def linearise(problem: Problem, unknowns: Unknowns) -> tuple[Blocks, Prediction]
 
     Each window has n + m + 5 unknowns and meets the q parameters; the derivatives come from `tangents.rows`.
     """
+    n, q, m = unknowns.starts.shape[0], unknowns.theta.shape[0], problem.windows.intervals
+    starts = unknowns.starts.T
+    following = jnp.concatenate([starts[1:], starts[:1]])
+    lead = Window(_lead(problem), starts, following, local_coefficients(unknowns.coefficients))
+    bare = eqx.tree_at(_lead, problem, replace=(None,) * len(_lead(problem)), is_leaf=lambda v: v is None)
+    met = by_chunks(_meet, (bare, unknowns.theta), lead, problem.windows.used)
+    blocks = assemble(met.gram, met.slope, met.end_rows, met.tie, met.tie_weight, n, m, q, jnp.sum(met.cost))
+    return _ridge(problem, unknowns, blocks, n), met.predicted
+
+
+class Window(eqx.Module):
+    """What some windows bring: their part of the `Windows`, ``start`` and ``following`` (W, n), ``local`` (W, m + 5)."""
+
+    data: tuple[Array, ...]
+    start: Array
+    following: Array
+    local: Array
+
+
+class Met(eqx.Module):
+    """Each window's own normal equations, in the unknowns it sees (U = n + m + 5 + q): ``gram`` (W, U, U), ``slope`` (W, U),
+    ``end_rows`` (W, U, n) weighted, ``tie`` and ``tie_weight`` (W, n), ``cost`` (W,)."""
+
+    gram: Array
+    slope: Array
+    end_rows: Array
+    tie: Array
+    tie_weight: Array
+    cost: Array
+    predicted: Prediction
+
+
+def _lead(problem: Problem) -> tuple[Array, ...]:
     w = problem.windows
-    n, q, m = unknowns.starts.shape[0], unknowns.theta.shape[0], w.intervals
-    local = local_coefficients(unknowns.coefficients)
-    predicted, states, u, du = _predict(problem, unknowns)
-    basis, lagged = _input_tangents(problem, unknowns.theta, local)
-    motion_rows, end_rows = rows(w, problem.rebuild, unknowns.theta, problem.active, states, u, du, basis, lagged)
-    motion, base, tie = residuals(problem, unknowns, predicted)
-    tie_weight = tie_weights(problem, unknowns)
+    return w.t0, w.measured, w.weight, w.tie, w.input, w.input_weight, w.force
+
+
+def _meet(shared: tuple[Problem, Array], own: Window) -> Met:
+    problem, theta = shared
+    problem = eqx.tree_at(_lead, problem, own.data, is_leaf=lambda v: v is None)
+    w = problem.windows
+    n, q = own.start.shape[1], theta.shape[0]
+    predicted, states, u, du = _predict(problem, theta, own.start.T, own.local)
+    basis, lagged = _input_tangents(problem, theta, own.local)
+    motion_rows, end_rows = rows(w, problem.rebuild, theta, problem.active, states, u, du, basis, lagged)
+    tie_weight = tie_weights(problem, n)
+    motion, base, tie = _residuals(w, predicted, own.following, tie_weight)
     weighted = jnp.concatenate([motion_rows * w.weight[:, None, :], end_rows * tie_weight[:, None, :]], axis=2)
     gram = jnp.einsum("wir,wjr->wij", weighted, weighted)
     slope = jnp.einsum("wir,wr->wi", weighted, jnp.concatenate([motion, tie], axis=1))
-    if w.intervals:
+    if own.local.shape[1]:
         # The input's own samples meet its coefficients alone.
         seen = w.basis[0, : -1 : w.every]
         scaled = seen * w.input_weight[:, :, None]
-        own = jnp.einsum("wri,wrj->wij", scaled, scaled)
-        gram = gram + jnp.pad(own, ((0, 0), (n, q), (n, q)))
+        by_itself = jnp.einsum("wri,wrj->wij", scaled, scaled)
+        gram = gram + jnp.pad(by_itself, ((0, 0), (n, q), (n, q)))
         slope = slope + jnp.pad(jnp.einsum("wri,wr->wi", scaled, base), ((0, 0), (n, q)))
-    cost = 0.5 * (jnp.sum(motion**2) + jnp.sum(base**2) + jnp.sum(tie**2))
-    blocks = assemble(gram, slope, weighted[:, :, -n:], tie, tie_weight, n, m, q, cost)
-    return _ridge(problem, unknowns, blocks, n), predicted
+    cost = 0.5 * (jnp.sum(motion**2, axis=1) + jnp.sum(base**2, axis=1) + jnp.sum(tie**2, axis=1))
+    return Met(gram, slope, weighted[:, :, -n:], tie, tie_weight, cost, predicted)
 
 
 def assemble(

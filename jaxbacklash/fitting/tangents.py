@@ -19,8 +19,8 @@ from ..system import System
 from .windows import Windows
 
 Array = Any
-BLOCK = 768
-"""Panels that are differentiated side by side."""
+BLOCK = 800
+"""Panels that are differentiated side by side, at most."""
 
 
 def drive(w: Windows, u: Array, du: Array, force: Array) -> Drive:
@@ -52,10 +52,11 @@ def panel_matrices(
     n, q = len(states), theta.shape[0]
     panels, windows = w.force.shape[1] - 1, w.count
     blocks = -(-panels * windows // BLOCK)
+    size = -(-panels * windows // blocks)
 
     def lay(values: Array) -> Array:
         flat = values.T.ravel()
-        return jnp.pad(flat, (0, blocks * BLOCK - flat.size)).reshape(blocks, BLOCK)
+        return jnp.pad(flat, (0, blocks * size - flat.size)).reshape(blocks, size)
 
     edges = (*states, u[:, :-1], du[:, :-1], u[:, 1:], du[:, 1:])
     t = w.t0[:, None] + w.panel * jnp.arange(panels)
@@ -77,7 +78,7 @@ def panel_matrices(
             end = jax.jvp(lambda o, th: lanes(o, th, t, f0, f1), (own, theta), (moved, seed[n + 4 :]))[1]
             return tuple(jax.lax.dynamic_update_slice_in_dim(f, e[None], j, axis=0) for f, e in zip(found, end))
 
-        empty = tuple(jnp.zeros((n + 4 + q, BLOCK)) for _ in range(n))
+        empty = tuple(jnp.zeros((n + 4 + q, size)) for _ in range(n))
         return jax.lax.fori_loop(0, n + 4 + active, push, empty)
 
     found = jax.lax.map(block, (tuple(lay(v) for v in edges), lay(t), lay(w.force[:, :-1]), lay(w.force[:, 1:])))

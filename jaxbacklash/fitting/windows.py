@@ -13,16 +13,20 @@ from collections.abc import Sequence
 from typing import Any
 
 import equinox as eqx
+import jax
 import numpy as np
 from scipy.interpolate import BSpline
 
 from ..errors import BadInput
 from ..records import Record
 from ..signals import DEGREE, NEGLIGIBLE, choose_intervals, fit_spline, is_smooth, knots, noise_level
+from .chunks import CHUNK
 
 Array = Any
 LONGEST_PANEL = 2.0e-3
 """Longest integration panel [s]; a panel is two Runge-Kutta steps."""
+LEAST_ROOM = 512
+"""Windows that the smallest compiled program has room for."""
 
 
 class Windows(eqx.Module):
@@ -33,7 +37,8 @@ class Windows(eqx.Module):
     ``tie`` (W,), 1 where the window runs on into the next; ``input`` (W, M) measured input and ``input_weight`` (W, M);
     ``force`` (W, P+1) exact force at panel edges; ``coefficients`` (W, m) start of the spline; ``basis`` (6, P+1, m+5)
     the splines and their derivatives at panel edges; ``starts`` (2, W) position and speed of the link from the smoothed data;
-    ``drop`` (2,) how sharply ends tie to starts [1/rad, s/rad]; ``by_force`` True when the spline is of the force.
+    ``drop`` (2,) how sharply ends tie to starts [1/rad, s/rad]; ``used`` how many windows, the first ones, hold
+    data; ``by_force`` True when the spline is of the force.
     """
 
     t0: Array
@@ -48,6 +53,7 @@ class Windows(eqx.Module):
     starts: Array
     drop: Array
     panel: Array
+    used: Array
     every: int = eqx.field(static=True)
     by_force: bool = eqx.field(static=True)
 
@@ -77,11 +83,15 @@ class Layout(eqx.Module):
 
 
 def bucket(count: int) -> int:
-    """The next of a ladder of sizes a quarter apart: 16, 20, 25, 32, 40, ..."""
-    size = 16.0
-    while int(size) < count:
-        size *= 1.25
-    return int(size)
+    """Room for ``count`` windows: 512, 2048, 8192, ... (or a little more on odd numbers of cores).
+
+    Chunks that hold no data are skipped, so that room costs little, and a record of another length hardly ever compiles anew.
+    """
+    together = CHUNK * jax.device_count()
+    size = -(-LEAST_ROOM // together) * together
+    while size < count:
+        size *= 4
+    return size
 
 
 def cut(
@@ -135,7 +145,7 @@ def cut(
     panel = dt / every
     windows = Windows(
         basis=_basis(length, every, intervals, panel), drop=drop, panel=np.asarray(panel), every=every, starts=starts,
-        by_force=driver == "F", **stacked,
+        used=np.asarray(sum(counts)), by_force=driver == "F", **stacked,
     )  # fmt: skip
     layout = Layout(
         first=tuple(int(v) for v in np.cumsum([0, *counts[:-1]])),

@@ -1,0 +1,85 @@
+"""Windows in chunks: as many as the record fills, shared among the processor's cores.
+
+A program is compiled for a number of windows that hardly ever changes; how many of them hold data is a number it is told.
+A chunk's intermediate arrays stay in the processor's cache, and where JAX sees several CPU devices (see
+`jaxbacklash.start`) each takes every other chunk.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax.sharding import Mesh, PartitionSpec
+
+Array = Any
+CHUNK = 32
+"""Windows that are worked on side by side."""
+
+
+def by_chunks(work: Callable[[Any, Any], Any], shared: Any, lead: Any, used: Array) -> Any:
+    """``work(shared, lead)`` where only the first ``used`` windows hold data.
+
+    Parameters
+    ----------
+    work : maps ``shared`` and arrays with some windows on their leading axis to arrays with the same leading axis
+    shared : what all windows have in common
+    lead : arrays with all W windows on the leading axis
+    used : number of windows that hold data; chunks without any are zero in the result
+    """
+    count = jax.tree.leaves(lead)[0].shape[0]
+    if count % CHUNK:
+        return work(shared, lead)
+    cores = jax.device_count()
+    if count % (CHUNK * cores):
+        cores = 1
+    arrays, rest = eqx.partition(shared, eqx.is_array)
+    turns = count // (CHUNK * cores)
+    dealt = jax.tree.map(lambda a: jnp.swapaxes(a.reshape(turns, cores, CHUNK, *a.shape[1:]), 0, 1), lead)
+
+    def run(core: Array, arrays: Any, own: Any, used: Array) -> Any:
+        one = lambda k: work(eqx.combine(arrays, rest), jax.tree.map(lambda a: a[k], own))  # noqa: E731
+        shapes = jax.eval_shape(one, 0)
+        empty = jax.tree.map(lambda s: jnp.zeros((turns, *s.shape), s.dtype), shapes)
+
+        def turn(k: Array, found: Any) -> Any:
+            put = lambda f, new: jax.lax.dynamic_update_index_in_dim(f, new, k, 0)  # noqa: E731
+            return jax.tree.map(put, found, one(k))
+
+        todo = jnp.clip(-(-(-(-used // CHUNK) - core) // cores), 0, turns)
+        return jax.lax.fori_loop(0, todo, turn, empty)
+
+    if cores == 1:
+        found = run(jnp.asarray(0), arrays, jax.tree.map(lambda a: a[0], dealt), used)
+        return jax.tree.map(lambda a: a.reshape(count, *a.shape[2:]), found)
+
+    def on_core(arrays: Any, own: Any, used: Array) -> Any:
+        found = run(jax.lax.axis_index("cores"), arrays, jax.tree.map(lambda a: a[0], own), used)
+        return jax.tree.map(lambda a: jax.lax.all_gather(a, "cores", axis=1), found)
+
+    everywhere, split = PartitionSpec(), PartitionSpec("cores")
+    mesh = Mesh(np.asarray(jax.devices()), ("cores",))
+    spread = jax.shard_map(
+        on_core, mesh=mesh, in_specs=(everywhere, split, everywhere), out_specs=everywhere, check_vma=False
+    )
+    return jax.tree.map(lambda a: a.reshape(count, *a.shape[3:]), spread(arrays, dealt, used))
+
+
+def scan_used(step: Callable[[Any, Any], tuple[Any, Any]], first: Any, along: Any, used: Array, *, reverse: bool = False) -> Any:
+    """The stacked outputs of a `jax.lax.scan` over the first ``used`` entries, the last of them first in ``reverse``; zero beyond."""
+    take = lambda k: jax.tree.map(lambda a: jax.lax.dynamic_index_in_dim(a, k, 0, keepdims=False), along)  # noqa: E731
+    length = jax.tree.leaves(along)[0].shape[0]
+    shapes = jax.eval_shape(lambda: step(first, take(0))[1])
+    empty = jax.tree.map(lambda s: jnp.zeros((length, *s.shape), s.dtype), shapes)
+
+    def turn(k: Array, carry: Any) -> Any:
+        state, found = carry
+        at = used - 1 - k if reverse else k
+        state, out = step(state, take(at))
+        return state, jax.tree.map(lambda f, o: jax.lax.dynamic_update_index_in_dim(f, o, at, 0), found, out)
+
+    return jax.lax.fori_loop(0, used, turn, (first, empty))[1]
