@@ -14,7 +14,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-from scipy import linalg, signal
+from scipy import linalg
 
 from ..mechanics import AbstractEffect, Drive, canonical_name
 from ..parameters import ravel, specs, unravel
@@ -139,7 +139,9 @@ def _whitener(residual: np.ndarray) -> Any:
     lags[0] *= 1.0 + 1e-9
     weights = linalg.solve_toeplitz(lags[:-1], lags[1:]) if lags[0] > 0.0 else np.zeros(order)
     taps = np.concatenate([[1.0], -weights])
-    return lambda rows: signal.lfilter(taps, [1.0], rows, axis=0)[order:]
+    from scipy.signal import lfilter  # half a second to import, and a plain fit does without
+
+    return lambda rows: lfilter(taps, [1.0], rows, axis=0)[order:]
 
 
 @eqx.filter_jit

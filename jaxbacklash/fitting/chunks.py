@@ -41,20 +41,22 @@ def by_chunks(work: Callable[[Any, Any], Any], shared: Any, lead: Any, used: Arr
     turns = count // (CHUNK * cores)
     dealt = jax.tree.map(lambda a: jnp.swapaxes(a.reshape(turns, cores, CHUNK, *a.shape[1:]), 0, 1), lead)
 
+    # Compiled within, so that it is traced once: for the shapes and for the loop.
+    one = jax.jit(lambda arrays, own, k: work(eqx.combine(arrays, rest), jax.tree.map(lambda a: a[k], own)))
+
     def run(core: Array, arrays: Any, own: Any, used: Array) -> Any:
-        one = lambda k: work(eqx.combine(arrays, rest), jax.tree.map(lambda a: a[k], own))  # noqa: E731
-        shapes = jax.eval_shape(one, 0)
+        shapes = jax.eval_shape(one, arrays, own, core)
         empty = jax.tree.map(lambda s: jnp.zeros((turns, *s.shape), s.dtype), shapes)
 
         def turn(k: Array, found: Any) -> Any:
             put = lambda f, new: jax.lax.dynamic_update_index_in_dim(f, new, k, 0)  # noqa: E731
-            return jax.tree.map(put, found, one(k))
+            return jax.tree.map(put, found, one(arrays, own, k))
 
         todo = jnp.clip(-(-(-(-used // CHUNK) - core) // cores), 0, turns)
-        return jax.lax.fori_loop(0, todo, turn, empty)
+        return jax.lax.fori_loop(jnp.asarray(0, jnp.int32), todo.astype(jnp.int32), turn, empty)
 
     if cores == 1:
-        found = run(jnp.asarray(0), arrays, jax.tree.map(lambda a: a[0], dealt), used)
+        found = run(jnp.asarray(0, jnp.int32), arrays, jax.tree.map(lambda a: a[0], dealt), used)
         return jax.tree.map(lambda a: a.reshape(count, *a.shape[2:]), found)
 
     def on_core(arrays: Any, own: Any, used: Array) -> Any:
@@ -69,8 +71,8 @@ def by_chunks(work: Callable[[Any, Any], Any], shared: Any, lead: Any, used: Arr
     return jax.tree.map(lambda a: a.reshape(count, *a.shape[3:]), spread(arrays, dealt, used))
 
 
-def scan_used(step: Callable[[Any, Any], tuple[Any, Any]], first: Any, along: Any, used: Array, *, reverse: bool = False) -> Any:
-    """The stacked outputs of a `jax.lax.scan` over the first ``used`` entries, the last of them first in ``reverse``; zero beyond."""
+def scan_used(step: Callable[[Any, Any], tuple[Any, Any]], first: Any, along: Any, used: Array, reverse: bool = False) -> Any:
+    """The stacked outputs of a `jax.lax.scan` over the first ``used`` entries, zero beyond; ``reverse`` begins with the last."""
     take = lambda k: jax.tree.map(lambda a: jax.lax.dynamic_index_in_dim(a, k, 0, keepdims=False), along)  # noqa: E731
     length = jax.tree.leaves(along)[0].shape[0]
     shapes = jax.eval_shape(lambda: step(first, take(0))[1])

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
 import optimistix as optx
 
@@ -178,7 +177,7 @@ def tie_windows(
     # Free windows end close to the tied ones: a damped step would only fight the ties, which are stiff.
     solver, steps = ArrowLevenbergMarquardt(damping=1e-9, limit=limit), 0
     for tightness in ties:
-        problem = eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(tightness))
+        problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(tightness))
         solution = minimise(problem, unknowns, solver)
         unknowns, steps = solution.value, steps + int(solution.stats["steps"])
     return problem, solution, steps
@@ -236,7 +235,7 @@ def search(
         if attempt:
             # Values that must keep their sign move by up to a factor of 1.6; others by a little of their scale.
             shift = rng.uniform(-0.4, 0.6, len(free)) * np.where(problem.shrink, 1.0, 0.3)
-            theta = jnp.clip(jnp.asarray(shift), problem.lower, problem.upper)
+            theta = np.clip(shift, problem.lower, problem.upper)
             begin = eqx.tree_at(lambda u: u.theta, guess, theta)
         solution = minimise(problem, begin, solver)
         tried.append((float(solution.stats["cost"]), attempt, solution))
@@ -244,7 +243,7 @@ def search(
     if not tried:
         raise NoAnswer("no start led to a finite misfit: the record may hold something else than this model's motion")
     cost, _, best = min(tried, key=lambda entry: entry[:2])
-    rows = float(jnp.sum(windows.weight > 0))
+    rows = float(np.sum(np.asarray(windows.weight) > 0))
     excess = max(1.0, 2.0 * cost / rows)
     agreeing = sum(entry[0] - cost < 2.0 * excess for entry in tried)
 
@@ -260,7 +259,7 @@ def search(
             if np.sqrt(2.0 * after / freedom(solution.value, windows, tied=True)) < ADEQUATE:
                 best, problem, cost, tied = solution, joined, after, True
                 break
-    scale = np.asarray(jnp.sum(problem.directions, axis=0))
+    scale = np.sum(np.asarray(problem.directions), axis=0)
     covariance = _inverse(np.asarray(best.stats["schur"])) * np.outer(scale, scale)
     return Found(problem, best.value, covariance, cost, agreeing, len(tried), tied, steps)
 

@@ -6,7 +6,6 @@ import dataclasses
 from collections.abc import Callable, Sequence
 
 import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
 from scipy.optimize import brentq
 
@@ -44,17 +43,15 @@ def interval(problem: Problem, unknowns: Unknowns, j: int, stderr: float) -> tup
     """
     # At a tighter stop than a fit's: differences of the cost are what counts here.
     solver = ArrowLevenbergMarquardt(atol=1e-5)
-    scale = float(jnp.sum(problem.directions[:, j]))
-    centre = float(jnp.sum(jnp.where(problem.directions[:, j] != 0.0, problem.parameters(unknowns.theta), 0.0)))
-    held = eqx.tree_at(
-        lambda p: (p.directions, p.shrink), problem,
-        (problem.directions.at[:, j].set(0.0), problem.shrink.at[j].set(False)),
-    )  # fmt: skip
+    scale = float(np.sum(problem.directions[:, j]))
+    centre = float(np.sum(np.where(problem.directions[:, j] != 0.0, problem.parameters(unknowns.theta), 0.0)))
+    others = np.arange(problem.shrink.size) != j
+    held = eqx.tree_at(lambda p: (p.directions, p.shrink), problem, (problem.directions * others, problem.shrink & others))
 
     def cost(shift: float) -> float:
         base = problem.base + problem.directions[:, j] * (unknowns.theta[j] + shift / scale)
         moved = eqx.tree_at(lambda p: p.base, held, base)
-        start = Unknowns(jnp.asarray(unknowns.theta).at[j].set(0.0), unknowns.starts, unknowns.coefficients)
+        start = Unknowns(unknowns.theta * others, unknowns.starts, unknowns.coefficients)
         return 2.0 * float(minimise(moved, start, solver).stats["cost"])
 
     least = cost(0.0)

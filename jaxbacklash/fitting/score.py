@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import Any
 
 import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
 
 from .levenberg import ArrowLevenbergMarquardt, minimise
@@ -42,7 +41,7 @@ def frozen(problem: Problem, theta: Any) -> Problem:
     return eqx.tree_at(
         lambda p: (p.base, p.directions, p.shrink, p.active),
         problem,
-        (problem.parameters(theta), jnp.zeros_like(problem.directions), jnp.zeros(q, dtype=bool), jnp.asarray(0)),
+        (problem.parameters(theta), np.zeros(problem.directions.shape), np.zeros(q, dtype=bool), np.asarray(0)),
     )
 
 
@@ -65,8 +64,8 @@ def score(problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 
     for first, count in zip(layout.first, layout.windows):
         index = np.arange(count)
         tie[first : first + count] *= (index % group) != group - 1
-    still = eqx.tree_at(lambda p: (p.windows.tie, p.tie), still, (jnp.asarray(tie), jnp.asarray(1.0)))
-    begin = Unknowns(jnp.zeros_like(unknowns.theta), unknowns.starts, unknowns.coefficients)
+    still = eqx.tree_at(lambda p: (p.windows.tie, p.tie), still, (tie, np.asarray(1.0)))
+    begin = Unknowns(np.zeros(unknowns.theta.shape), unknowns.starts, unknowns.coefficients)
     solution = minimise(still, begin, ArrowLevenbergMarquardt(atol=0.03, damping=1e-6, limit=20))
     found = solution.value
     predicted = solution.stats["predicted"]

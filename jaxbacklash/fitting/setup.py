@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import jax.numpy as jnp
 import numpy as np
 
 from ..effects import Contact, Damper, Spring
@@ -126,34 +125,34 @@ def make_problem(system: System, windows: Windows, free: Sequence[str], *, tie: 
     return Problem(
         windows,
         system,
-        jnp.asarray(base),
-        jnp.asarray(directions),
-        jnp.asarray(lower),
-        jnp.asarray(upper),
-        jnp.asarray(shrink),
-        jnp.asarray(float(tie)),
-        jnp.asarray(len(free)),
+        np.asarray(base),
+        directions,
+        lower,
+        upper,
+        shrink,
+        np.asarray(float(tie)),
+        np.asarray(len(free)),
     )
 
 
 def first_guess(problem: Problem) -> Unknowns:
     """Starts from the smoothed data, the base motion from its spline, parameters as they are."""
     w, system = problem.windows, problem.system
-    y, dy = jnp.asarray(w.starts)
+    y, dy = np.asarray(w.starts)
     hidden = len(system.state_names) - 2
     if hidden:
         z, dz = _relative(w, y, dy)
-        full = system.rest(jnp.asarray(w.t0), y, dy, Drive(y - z, dy - dz, 0.0 * y))
-        starts = jnp.stack([jnp.broadcast_to(s, y.shape) for s in full])
+        full = system.rest(w.t0, y, dy, Drive(y - z, dy - dz, 0.0 * y))
+        starts = np.stack([np.broadcast_to(s, y.shape) for s in full])
     else:
-        starts = jnp.stack([y, dy])
-    return Unknowns(jnp.zeros(problem.directions.shape[1]), starts, jnp.asarray(w.coefficients))
+        starts = np.stack([y, dy])
+    return Unknowns(np.zeros(problem.directions.shape[1]), starts, np.asarray(w.coefficients))
 
 
-def _relative(w: Windows, y: jnp.ndarray, dy: jnp.ndarray) -> tuple[jnp.ndarray, jnp.ndarray]:
+def _relative(w: Windows, y: np.ndarray, dy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     if not w.intervals or w.by_force:
         return y, dy
-    own = jnp.asarray(w.coefficients)
-    following = jnp.concatenate([own[1:], jnp.zeros_like(own[:1])])
-    local = jnp.concatenate([own, following[:, : w.basis.shape[2] - w.intervals]], axis=1)
+    own = np.asarray(w.coefficients)
+    following = np.concatenate([own[1:], np.zeros_like(own[:1])])
+    local = np.concatenate([own, following[:, : w.basis.shape[2] - w.intervals]], axis=1)
     return y - local @ w.basis[0, 0], dy - local @ w.basis[1, 0]

@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from scipy import interpolate, signal
+from scipy import interpolate
 
 from . import time_axis
 from .checks import number, wrong
@@ -96,6 +96,8 @@ def _low_passed(values: np.ndarray, share: float) -> np.ndarray:
     """A column without what lies above half the new rate; `share` is the new rate over the old."""
     if not _smooth(values):
         return values
+    from scipy import signal  # half a second to import, and few records need it
+
     sections = signal.cheby2(12, 40, share, output="sos")
     # Run both ways, so the channels keep their phase; the ends are continued for some periods of the cutoff.
     return signal.sosfiltfilt(sections, values, padlen=min(values.size - 1, math.ceil(20 / share)))
