@@ -108,7 +108,7 @@ def test_shooting_residual(name, record):
     free = [n for n, spec in specs(system).items() if not spec.fixed]
     problem = make_problem(system, windows, free, tie=1.0)
     start = first_guess(problem)
-    starts = start.starts.at[2:].add(0.01)
+    starts = jnp.asarray(start.starts).at[2:].add(0.01)
     start = Unknowns(start.theta, starts, start.coefficients)
 
     @jax.jit

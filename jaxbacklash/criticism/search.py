@@ -103,7 +103,7 @@ class Search:
             steps = self.with_hidden(steps)
             if not explained(steps[-1].trial):
                 steps = self.forward(steps[-1].trial, steps, LITTLE)
-        steps, self.level = self.swap(self.trim(steps))
+        steps, self.level = self.swap(self.trim(self.with_kin(steps)))
         return steps
 
     def trim(self, steps: list[Step]) -> list[Step]:
@@ -142,6 +142,31 @@ class Search:
             if path[-1].trial.tied and (not final.tied or path[-1].trial.criterion < final.criterion - demanded(self.bench)):
                 return path
         return steps
+
+    def with_kin(self, steps: list[Step]) -> list[Step]:
+        """Another path, where a near relative of a law with internal states explains with less beside it, or more."""
+        final = steps[-1].trial
+        name = next((n for n in sorted(final.names) if self.bench.laws[n].states and self.bench.laws[n].family), None)
+        if name is None or (explained(final) and len(final.names) == 1):
+            return steps
+        effects = {n: e for n, e in self.bench.effects(final).items() if n != name}
+        best = final
+        for other, law in self.bench.laws.items():
+            if other == name or law.family != self.bench.laws[name].family or not law.states:
+                continue
+            self.progress(f"trying {other} in place of {name}", 0.7)
+            guesses = law.guesses(final.system)
+            for effect in self.bench.quick.choose(steps[0].trial.system, steps[0].trial.free, guesses, keep=1):
+                trial = self._keep(self.bench.fit({**effects, other: effect}, final, tied=False, patience=WHOLE))
+                settled, _ = self.prune(self.settle(trial))
+                lead = best.criterion - settled.criterion
+                better = settled.tied > best.tied or (settled.tied == best.tied and lead > demanded(self.bench))
+                if other in settled.names and better:
+                    best = settled
+        if best is final:
+            return steps
+        added = next(n for n in best.names if self.bench.laws[n].states)
+        return self.forward(best, [steps[0], Step(best, added, (), ())], MUCH)
 
     def swap(self, steps: list[Step]) -> tuple[list[Step], dict[tuple[str, ...], float]]:
         """One effect of the last model after the other replaced by what else would do: the better path, and what does as well."""

@@ -14,6 +14,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax.flatten_util import ravel_pytree
 from jax.sharding import Mesh, PartitionSpec
 
 Array = Any
@@ -42,15 +43,15 @@ def by_chunks(work: Callable[[Any, Any], Any], shared: Any, lead: Any, used: Arr
     dealt = jax.tree.map(lambda a: jnp.swapaxes(a.reshape(turns, cores, CHUNK, *a.shape[1:]), 0, 1), lead)
 
     # Compiled within, so that it is traced once: for the shapes and for the loop.
-    one = jax.jit(lambda arrays, own, k: work(eqx.combine(arrays, rest), jax.tree.map(lambda a: a[k], own)))
+    one = jax.jit(lambda arrays, part: work(eqx.combine(arrays, rest), part))
 
     def run(core: Array, arrays: Any, own: Any, used: Array) -> Any:
-        shapes = jax.eval_shape(one, arrays, own, core)
+        shapes = jax.eval_shape(one, arrays, jax.tree.map(lambda a: a[0], own))
         empty = jax.tree.map(lambda s: jnp.zeros((turns, *s.shape), s.dtype), shapes)
 
         def turn(k: Array, found: Any) -> Any:
             put = lambda f, new: jax.lax.dynamic_update_index_in_dim(f, new, k, 0)  # noqa: E731
-            return jax.tree.map(put, found, one(arrays, own, k))
+            return jax.tree.map(put, found, one(arrays, jax.tree.map(lambda a: a[k], own)))
 
         todo = jnp.clip(-(-(-(-used // CHUNK) - core) // cores), 0, turns)
         return jax.lax.fori_loop(jnp.asarray(0, jnp.int32), todo.astype(jnp.int32), turn, empty)
@@ -61,14 +62,18 @@ def by_chunks(work: Callable[[Any, Any], Any], shared: Any, lead: Any, used: Arr
 
     def on_core(arrays: Any, own: Any, used: Array) -> Any:
         found = run(jax.lax.axis_index("cores"), arrays, jax.tree.map(lambda a: a[0], own), used)
-        return jax.tree.map(lambda a: jax.lax.all_gather(a, "cores", axis=1), found)
+        # One array, so that the cores wait for one another once.
+        return jax.lax.all_gather(jax.vmap(lambda f: ravel_pytree(f)[0])(found), "cores", axis=1)
 
     everywhere, split = PartitionSpec(), PartitionSpec("cores")
     mesh = Mesh(np.asarray(jax.devices()), ("cores",))
     spread = jax.shard_map(
         on_core, mesh=mesh, in_specs=(everywhere, split, everywhere), out_specs=everywhere, check_vma=False
     )
-    return jax.tree.map(lambda a: a.reshape(count, *a.shape[3:]), spread(arrays, dealt, used))
+    first = jax.tree.map(lambda a: a[0, 0], dealt)
+    _, unravel = ravel_pytree(jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), jax.eval_shape(one, arrays, first)))
+    found = jax.vmap(jax.vmap(unravel))(spread(arrays, dealt, used))
+    return jax.tree.map(lambda a: a.reshape(count, *a.shape[3:]), found)
 
 
 def scan_used(step: Callable[[Any, Any], tuple[Any, Any]], first: Any, along: Any, used: Array, reverse: bool = False) -> Any:
