@@ -8,7 +8,7 @@ of unknowns a window has, so each of those brings a program of its own, compiled
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import equinox as eqx
@@ -162,7 +162,7 @@ class Workbench:
         w, layout = self.windows, self.layout
         self.noise_factor *= factor
         self.windows = eqx.tree_at(lambda w: (w.weight, w.drop), w, (np.asarray(w.weight) / factor, np.asarray(w.drop) / factor))
-        self.layout = eqx.tree_at(lambda v: v.noise, layout, tuple(factor * n for n in layout.noise))
+        self.layout = replace(layout, noise=tuple(factor * n for n in layout.noise))
 
     def _trial(
         self, problem: Problem, solution: Any, names: frozenset[str], free: tuple[str, ...], tied: bool, patience: int

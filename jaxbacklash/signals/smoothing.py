@@ -122,6 +122,6 @@ def is_smooth(t: np.ndarray, values: np.ndarray, window: float) -> bool:
     """
     dt = (t[-1] - t[0]) / (t.size - 1)
     intervals = choose_intervals(t, values, window)
-    if intervals < 0.75 * window / (2.0 * dt):
-        return True
-    return fit_spline(t, values, t[0], window / intervals).noise < 1e-3 * float(np.std(values))
+    share = fit_spline(t, values, t[0], window / intervals).noise / max(float(np.std(values)), 1e-300)
+    # What no spline follows better than a few coefficients do is broadband noise, not a smooth signal with some noise on it.
+    return share < (0.3 if intervals < 0.75 * window / (2.0 * dt) else 1e-3)
