@@ -15,6 +15,14 @@ MOST_CORES = 8
 """More devices than this do not speed up a fit of usual length."""
 
 
+FLAGS = {
+    "xla_cpu_prefer_vector_width": 512,  # halves the time of a fit on current CPUs
+    # A program that is suspended for a while is not stuck.
+    "xla_cpu_collective_call_warn_stuck_timeout_seconds": 100_000,
+    "xla_cpu_collective_call_terminate_timeout_seconds": 100_000,
+}
+
+
 def cache_folder() -> Path:
     """Where compiled programs are kept: ``JAXBACKLASH_CACHE``, else the user's cache folder."""
     chosen = os.environ.get("JAXBACKLASH_CACHE")
@@ -32,10 +40,10 @@ def start(*, cache: bool = True) -> None:
     """Switch to double precision, ask for wide vectors and one device a core, and keep compiled programs for the next run."""
     import jax
 
-    # XLA reads its flags when the first computation starts; wide vectors halve the time of a fit on current CPUs.
+    # XLA reads its flags when the first computation starts.
     flags = os.environ.get("XLA_FLAGS", "")
-    if "xla_cpu_prefer_vector_width" not in flags:
-        os.environ["XLA_FLAGS"] = f"{flags} --xla_cpu_prefer_vector_width=512".strip()
+    ours = [f"--{name}={value}" for name, value in FLAGS.items() if name not in flags]
+    os.environ["XLA_FLAGS"] = " ".join([flags, *ours]).strip()
     enable_double_precision()
     with contextlib.suppress(RuntimeError):  # the program has computed already: it goes on with what it has
         jax.config.update("jax_num_cpu_devices", min(cores(), MOST_CORES))

@@ -205,11 +205,13 @@ def prepare(
     ``intervals`` asks for at least so many spline intervals a window, so that two records may share a compiled program.
     """
     shooting = 0.5 * window if window < 2 * SHOOTING_WINDOW else SHOOTING_WINDOW
-    longest = LONGEST_PANEL
+    # Without the noise of a base motion a record says ten times more: its panels have to be finer.
+    finer = 1.0 if records[0].kind == "base_motion" else 2.0
+    longest = LONGEST_PANEL / finer
     if system.contact is not None:
         # Thirty-two panels a period of the contact resonance keep the integration error a thousandth of an encoder's noise.
         omega = np.sqrt(float(system.contact.stiffness) / float(system.inertia))
-        longest = min(longest, max(2.0 * np.pi / max(omega, 1e-9) / 32.0, records[0].dt / 16.0))
+        longest = min(longest, max(2.0 * np.pi / max(omega, 1e-9) / (32.0 * finer), records[0].dt / 16.0))
     windows, layout = cut(records, shooting, longest_panel=longest, least=intervals)
     return windows, layout, max(1, round(window / (layout.length * layout.dt)))
 
