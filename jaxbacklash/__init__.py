@@ -55,6 +55,11 @@ from .sensors import SensorDelay as SensorDelay
 from .sensors import SensorGain as SensorGain
 from .sensors import SensorOffset as SensorOffset
 from .simulation import simulate as simulate
+from .skeleton import Response as Response
+from .skeleton import Skeleton as Skeleton
+from .skeleton import Skeletons as Skeletons
+from .skeleton import frequency_response as frequency_response
+from .skeleton import skeleton as skeleton
 from .system import System as System
 
 __version__ = "0.1.0"

@@ -163,6 +163,30 @@ def refine(
     )  # fmt: skip
 
 
+@app.command(epilog="Example: jaxbacklash skeleton sweep1.csv --inertia 3.16 --out skeleton1")
+def skeleton(
+    record: Annotated[Path, typer.Argument(help="A record of a sweep, a steady or modulated sine, or a free decay")],
+    inertia: Inertia = None,
+    gravity: Annotated[float, typer.Option("--gravity", help="m g L / J of the link [1/s^2], positive upright")] = 0.0,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for result.json and report.html")] = None,
+    json: Json = False,
+    columns: Columns = None,
+    unit: Unit = None,
+    scale: Scale = None,
+    resample: Resample = False,
+    resample_rate: ResampleRate = None,
+    translation: Translation = False,
+    seed: Seed = 0,
+) -> None:
+    """Play, stiffness and damping from envelopes and phases: Hilbert transform and wavelet, which stand beside the fit."""
+    from .commands import skeleton as command
+
+    command.run(
+        record, inertia=inertia, gravity=gravity, out=out, as_json=json, columns=columns, unit=unit, scale=scale,
+        resample=resample_rate or resample, translational=translation,
+    )  # fmt: skip
+
+
 @app.command(
     epilog="Example: jaxbacklash simulate fit1/model.toml --excitation chirp:amplitude=0.07,f0=0,f1=12 --out sim.csv"
 )

@@ -80,5 +80,6 @@ def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, *, silent
         sys.stdout.write(text)
     elif not silent:
         print(found)
+        print(result["cross_check"]["text"])
         if folder is not None:
             print(f"written: {folder}/result.json, model.toml, report.html")

@@ -94,6 +94,7 @@ def deliver(found: Refinement, folder: Path | None, machine: bool, tell: Any) ->
         sys.stdout.write(json_text(result))
         return
     print(text(found, last))
+    print(result["cross_check"]["text"])
     if folder is not None:
         print(f"written: {folder}/{', '.join(written)}")
 

@@ -60,9 +60,35 @@ def cross_check_table(check: Any, last: Entry) -> dict[str, Any] | None:
     words = "No second method could judge this fit."
     if agrees is not None:
         words = "The methods agree." if agrees else "The methods do not agree."
+    if check.get("text"):
+        return {"methods": [m.replace("_", " ") for m in methods], "rows": rows, "sentence": str(check["text"])}
     within = f" Tolerance: {check['tolerance']}." if check.get("tolerance") and agrees is not None else ""
     why = f" {_sentence(check['why'])}" if check.get("why") else ""
     return {"methods": [m.replace("_", " ") for m in methods], "rows": rows, "sentence": f"{words}{within}{why}"}
+
+
+def skeleton_tables(result: Entry) -> dict[str, Any] | None:
+    """The Hilbert and wavelet answers of ``skeleton`` side by side: a column a method, a row a parameter; None for others."""
+    if result.get("command") != "skeleton":
+        return None
+    methods = [name for name in ("hilbert", "wavelet") if isinstance(result.get(name), Mapping)]
+    rows = []
+    for name in (*BASE, "inertia"):
+        if any(name in result[method] for method in methods):
+            cells = []
+            for entry in (result[method].get(name, {}) for method in methods):
+                shown = [f"{number} {unit}".rstrip() for number, unit in parts(entry)]
+                cells.append({"lines": shown, "why": str(entry.get("why") or "")})
+            rows.append({"label": LABELS.get(name, "inertia J"), "cells": cells})
+    return {"methods": methods, "rows": rows, "warnings": [str(sentence) for sentence in result.get("warnings") or []]}
+
+
+def best_method(result: Entry) -> dict[str, Any]:
+    """A stage that holds the parameters of the method whose play has the smaller error, for the tiles."""
+    methods = [result[name] for name in ("wavelet", "hilbert") if isinstance(result.get(name), Mapping)]
+    told = [m for m in methods if is_number((m.get("backlash") or {}).get("stderr"))]
+    best = min(told, key=lambda m: m["backlash"]["stderr"]) if told else (methods or [{}])[0]
+    return {"parameters": {name: best[name] for name in BASE if name in best}}
 
 
 def length_unit(stages: Sequence[Entry]) -> str:

@@ -11,5 +11,10 @@ from .figures_joint import restoring_force as restoring_force
 from .figures_model import candidate_ranking as candidate_ranking
 from .figures_model import error_by_stage as error_by_stage
 from .figures_model import misfit_profile as misfit_profile
+from .figures_skeleton import backbone_and_damping as backbone_and_damping
+from .figures_skeleton import envelopes as envelopes
+from .figures_skeleton import instantaneous_frequency as instantaneous_frequency
+from .figures_skeleton import ridge_over_scalogram as ridge_over_scalogram
+from .figures_skeleton import skeleton_force as skeleton_force
 from .figures_time import measured_against_model as measured_against_model
 from .figures_time import residual_in_time as residual_in_time

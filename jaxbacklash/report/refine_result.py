@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -74,7 +73,7 @@ def _moved_json(step: Moved) -> dict[str, float | None]:
 
 
 def _checked(fit: Fit) -> dict[str, Any]:
-    """The equation-error estimate, with the effects that were found in its regression, beside the fit."""
+    """Other methods beside the fit, the equation-error estimate with the effects that were found in its regression."""
     if fit.start is None or not fit.system.effects:
         return cross_check(fit)
     inertia = None if "inertia" in fit.free else float(fit.system.inertia)
@@ -85,5 +84,5 @@ def _checked(fit: Fit) -> dict[str, Any]:
                 fit.records[0], inertia=inertia, play=play, spring=spring, effects=list(fit.system.effects.values())
             )
     except (BadInput, NoAnswer, np.linalg.LinAlgError, ValueError) as error:
-        return {"agrees": None, "why": f"the equation-error estimate failed: {error}"}
-    return cross_check(replace(fit, start=start))
+        return cross_check(fit) | {"equation_error": {"agrees": None, "why": f"the regression failed: {error}"}}
+    return cross_check(fit, start)

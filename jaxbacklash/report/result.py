@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from ..criticism.cross_check import cross_check as skeletons_beside
 from ..fitting import Comparison, Estimate, Fit, Score
+from ..fitting.equation_error import Start
 from ..fitting.print_fit import verdict_text
 from ..parameters import specs, unit_text, values
 from ..records import Record
@@ -63,11 +65,17 @@ def clean(estimate: Estimate) -> dict[str, Any]:
     return entry
 
 
-def cross_check(fit: Fit) -> dict[str, Any]:
-    """The equation-error estimate beside the fit: another method on the same samples, without simulation."""
-    if fit.start is None:
-        return {"agrees": None, "why": "the fit began from a given model, not from an estimate of its own"}
-    start = fit.start
+def cross_check(fit: Fit, start: Start | None = None) -> dict[str, Any]:
+    """Other methods on the same samples, without simulation: skeletons by Hilbert transform and wavelet, and the regression of
+    the equation of motion (``start``, by default the one that the fit began from)."""
+    found = skeletons_beside(fit).as_json()
+    regression = _equation_error(fit, fit.start if start is None else start)
+    return found | ({} if regression is None else {"equation_error": regression})
+
+
+def _equation_error(fit: Fit, start: Start | None) -> dict[str, Any] | None:
+    if start is None:
+        return None
     found: dict[str, Any] = {}
     agrees = True
     for name in ("backlash", "stiffness", "damping"):
@@ -78,7 +86,7 @@ def cross_check(fit: Fit) -> dict[str, Any]:
         found[name] = {"value": finite(value), "unit": estimate.unit}
         if estimate.value is not None and name != "damping":
             agrees &= abs(value - estimate.value) <= 0.03 * abs(estimate.value)
-    return {"equation_error": found, "agrees": bool(agrees), "tolerance": "3 % of play and stiffness"}
+    return found | {"agrees": bool(agrees), "tolerance": "3 % of play and stiffness"}
 
 
 def as_json(fit: Fit, *, command: str = "fit", command_line: str = "", version: str = "") -> dict[str, Any]:

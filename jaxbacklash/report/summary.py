@@ -6,7 +6,19 @@ from collections.abc import Mapping, Sequence
 from pathlib import PurePosixPath
 from typing import Any
 
-from .facts import BASE, LABELS, UNKNOWN, Entry, brief, cross_check_table, facts, parameters_of, parts
+from .facts import (
+    BASE,
+    LABELS,
+    UNKNOWN,
+    Entry,
+    best_method,
+    brief,
+    cross_check_table,
+    facts,
+    parameters_of,
+    parts,
+    skeleton_tables,
+)
 from .figures_model import stage_name
 from .style import format_evidence, format_interval, is_number, short, with_unit
 
@@ -27,7 +39,8 @@ def summarise(result: Entry) -> dict[str, Any]:
         # The page says the verdict's word itself, so a sentence need not begin with it.
         "verdict_text": str(result.get("verdict_text") or "").removeprefix("Incomplete: ").removeprefix("Complete: "),
         "findings": [str(sentence) for sentence in result.get("findings") or []],
-        "tiles": _tiles(stages),
+        "tiles": _tiles([best_method(result)] if result.get("command") == "skeleton" else stages),
+        "skeletons": skeleton_tables(result),
         "parameters": parameter_rows(stages),
         "stages": stage_rows(stages) if len(stages) > 1 else [],
         "stage_heads": _stage_heads(stages),
@@ -36,7 +49,7 @@ def summarise(result: Entry) -> dict[str, Any]:
         "alternatives": [" + ".join(map(str, names)) for names in result.get("alternatives") or [] if names],
         "alternatives_text": str(result.get("alternatives_text") or ""),
         "cross_check": cross_check_table(result.get("cross_check"), stages[-1] if stages else {}),
-        "facts": list(facts(result, record, path, stages)),
+        "facts": list(facts(result, record, path, stages or [best_method(result)])),
         "per_inertia": bool(result.get("per_inertia")),
         "command_line": str(result.get("command_line") or ""),
         "version": str(result.get("version") or ""),

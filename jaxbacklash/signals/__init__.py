@@ -1,7 +1,20 @@
 """Arrays in, arrays out; knows no system."""
 
+from .analytic import Carrier as Carrier
+from .analytic import analytic as analytic
+from .analytic import carrier as carrier
+from .analytic import denoised as denoised
+from .analytic import low_passed as low_passed
 from .bump import Bump as Bump
+from .cycles import CycleSpline as CycleSpline
+from .cycles import SlowCurve as SlowCurve
+from .morlet import Atoms as Atoms
+from .morlet import Morlet as Morlet
+from .morlet import Scalogram as Scalogram
+from .morlet import frequency_grid as frequency_grid
+from .morlet import scalogram as scalogram
 from .noise import noise_level as noise_level
+from .ridge import ridge as ridge
 from .smoothing import DEGREE as DEGREE
 from .smoothing import NEGLIGIBLE as NEGLIGIBLE
 from .smoothing import SmoothMotion as SmoothMotion

@@ -1,0 +1,149 @@
+"""Other methods beside a fit: skeletons by Hilbert transform and wavelet, which share nothing with it but the samples.
+
+Both know the joint alone; the torque of effects that the fit has found is taken from its model along the measured motion and
+told to them as a known load. Where they disagree, the sentence says which assumption broke.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+
+from ..effects import Contact
+from ..errors import BadInput, NoAnswer
+from ..fitting import Fit
+from ..mechanics import Drive
+from ..signals import choose_intervals, fit_spline
+from ..skeleton import Skeleton, Skeletons, skeleton
+from ..system import System
+
+AGREE = 3.0
+"""Standard errors of the difference within which two methods agree."""
+NEGLIGIBLE = 0.005
+"""Relative difference of play and stiffness that nobody would call disagreement, whatever the error bars say."""
+JUDGED = ("backlash", "stiffness")
+METHODS = {"hilbert": "Hilbert transform", "wavelet": "wavelet"}
+
+
+@dataclass(frozen=True)
+class CrossCheck:
+    """What other methods say about a fit: ``agrees`` is None where none could judge; ``why`` and ``text`` are sentences.
+
+    ``apart`` holds (method, parameter, standard errors) of every disagreement.
+    """
+
+    skeletons: Skeletons | None
+    agrees: bool | None
+    text: str
+    why: str = ""
+    apart: tuple[tuple[str, str, float], ...] = ()
+
+    def as_json(self) -> dict[str, Any]:
+        """The entries ``hilbert``, ``wavelet``, ``agrees``, ``text``, ``masked_fraction`` of result.json."""
+        found: dict[str, Any] = {}
+        if self.skeletons is not None:
+            for method in self.skeletons.methods:
+                found[method.method] = {name: value.as_json() for name, value in method.parameters.items()}
+            found["masked_fraction"] = self.skeletons.masked_fraction
+        found |= {"agrees": self.agrees, "text": self.text}
+        return found | ({"why": self.why} if self.why else {})
+
+
+def cross_check(fit: Fit) -> CrossCheck:
+    """Set the Hilbert and wavelet skeletons of the fit's first record beside it. Never raises for a record it cannot use."""
+    record = fit.records[0]
+    if not isinstance(fit.system.contact, Contact):
+        return _silent("the model has no play, so there is none to compare")
+    try:
+        with np.errstate(all="ignore"):
+            inertia = float(fit.system.inertia)
+            found = skeleton(record, inertia, load=_loads(fit), translational=fit.translational)
+    except (BadInput, NoAnswer, np.linalg.LinAlgError, ValueError, IndexError) as error:
+        return _silent(f"the skeletons failed: {error}")
+    judges = [method for method in found.methods if not method.why]
+    if not judges:
+        return _silent(found.hilbert.why or found.wavelet.why, found)
+    apart, asked = [], 0
+    for method in judges:
+        for name in JUDGED:
+            distance = _apart(fit, method, name)
+            if distance is None:
+                continue
+            asked += 1
+            if distance > AGREE:
+                apart.append((method.method, name, distance))
+    if not asked:
+        return _silent("neither the fit nor the skeletons tell a play and a stiffness to compare", found)
+    if not apart:
+        names = " and ".join(METHODS[m.method] for m in judges)
+        agree = f"{names[:1].upper()}{names[1:]}, independent of the fit, agree with its play and stiffness."
+        return CrossCheck(found, True, agree)
+    return CrossCheck(found, False, _broken(fit, found, tuple(apart)), "", tuple(apart))
+
+
+def _silent(why: str, found: Skeletons | None = None) -> CrossCheck:
+    return CrossCheck(found, None, f"Hilbert transform and wavelet cannot judge this fit: {why}.", why)
+
+
+def _apart(fit: Fit, method: Skeleton, name: str) -> float | None:
+    """Distance of the fit's value from the skeleton's in standard errors of the difference; None where either has none."""
+    ours, theirs = fit.parameters.get(name), method.parameters.get(name)
+    if ours is None or theirs is None or ours.value is None or theirs.value is None or theirs.stderr is None:
+        return None
+    difference = abs(ours.value - theirs.value)
+    if difference < NEGLIGIBLE * abs(ours.value):
+        return 0.0
+    return float(difference / max(float(np.hypot(theirs.stderr, ours.stderr or 0.0)), 1e-300))
+
+
+def _broken(fit: Fit, found: Skeletons, apart: tuple[tuple[str, str, float], ...]) -> str:
+    """Which assumption broke: the first of those that can be tested and fails."""
+    method, name, distance = max(apart, key=lambda entry: entry[2])
+    said = f"The {METHODS[method]} tells another {name} than the fit, by {distance:.1f} standard errors"
+    drifting = next((s for m in found.methods for s in m.warnings if s.startswith("large amplitudes")), "")
+    if not fit.adequate:
+        return f"{said}: the model misses something, and each method takes what is missing for play and stiffness in its own way."
+    if drifting:
+        return f"{said}; {drifting}."
+    hidden = sorted(name for name, effect in fit.system.effects.items() if effect.states)
+    if hidden:
+        return f"{said}: {' and '.join(hidden)} has a state of its own, whose torque the skeletons cannot be told."
+    one = {m.method for m in found.methods if not m.why} - {entry[0] for entry in apart}
+    if one:
+        other = METHODS[one.pop()]
+        return f"{said}, the {other} does not: more likely the {METHODS[method]}'s assumption of a slow envelope has broken."
+    masked = found.masked_fraction
+    if masked > 0.5:
+        return f"{said}: {100 * masked:.0f} % of the record had to be masked, so the skeleton may not be typical of the whole."
+    return f"{said}, though the model explains the record: the skeleton's assumption of one slow oscillation has broken."
+
+
+def _loads(fit: Fit) -> np.ndarray | None:
+    """Torque of the fit's effects along the measured motion [N m], shape (N,), None where there are none.
+
+    Internal states (hysteresis, a second inertia) stay at rest here: they are not measured.
+    """
+    system, record = fit.system, fit.records[0]
+    if not system.effects:
+        return None
+    t, zero = jnp.asarray(record.t), np.zeros(record.samples)
+    channels = record.channels
+    x, dx = _smooth(record.t, channels.get("x", zero))
+    y, dy = _smooth(record.t, channels["y"] if "y" in channels else channels["z"] + channels.get("x", zero))
+    drive = Drive(jnp.asarray(x), jnp.asarray(dx), jnp.asarray(zero))
+
+    def torque(of: System) -> np.ndarray:
+        state = (jnp.asarray(y), jnp.asarray(dy), *(jnp.zeros(record.samples) for _ in of.state_names[2:]))
+        return np.asarray(of.torques(of.instant(t, state, drive), state)[0])
+
+    return torque(system) - torque(system.without(*system.effects))
+
+
+def _smooth(t: np.ndarray, values: np.ndarray, window: float = 0.1) -> tuple[np.ndarray, np.ndarray]:
+    if not np.any(values):
+        return values, values
+    spline = fit_spline(t, values, t[0], window / choose_intervals(t, values, window))
+    return spline(t), spline(t, 1)

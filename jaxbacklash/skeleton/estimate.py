@@ -1,0 +1,321 @@
+"""Skeletons of a record: two classical ways to play, stiffness and damping, independent of the fit by simulation."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..errors import BadInput
+from ..parameters import unit_text
+from ..records import Record
+from ..signals import choose_intervals, fit_spline
+from . import masks
+from .fundamental import Fundamental, hilbert_fundamental, wavelet_fundamental
+from .inversion import Inversion, Terms, invert
+from .modal import modal
+from .result import NAMES, Skeleton, Skeletons, Value
+
+FINEST = 100.0
+"""Samples a cycle of the fastest motion beyond which neighbours are averaged: more tell nothing and cost memory."""
+QUIET = 2e-3
+"""Share of the largest swing below which a decay is over."""
+UNITS = ("rad", "N m/rad", "N m s/rad", "kg m^2")
+LOUD = 0.2
+"""Noise of z over the half play from which the corner of the dead zone is blurred."""
+POOR = 0.5
+"""Relative standard error beyond which a value is not told."""
+DRIFTED = 3.0
+"""Standard errors by which lower and upper amplitudes must differ before the model is doubted and errors are widened."""
+FLOOR = 1e-4
+"""Relative error that sampling and filtering alone may leave: no error bar is smaller."""
+NO_SWEEP = 1.15
+"""Ratio of large to small amplitudes below which play and stiffness cannot be told apart."""
+
+
+def skeleton(
+    record: Record,
+    inertia: float | None = None,
+    *,
+    gravity: float = 0.0,
+    load: np.ndarray | None = None,
+    translational: bool = False,
+    progress: Callable[[str, float], None] | None = None,
+) -> Skeletons:
+    """Estimate play, stiffness and damping from envelopes and phases, by Hilbert transform and by wavelet.
+
+    Assumes one frequency at a time: a sweep, steady or modulated sines, a free decay. What breaks that, and stretches that
+    hold nothing about the contact, are masked and told in ``warnings``. A record that is broken throughout (multisine,
+    noise, chaos) gives no values, and says why.
+
+    Parameters
+    ----------
+    record : base motion (x and z or y), force (F and y) or free decay (z)
+    inertia : J [kg m^2]; None: fitted to force-driven records, else values are per unit inertia
+    gravity : C = m g L / J of (3.3) [1/s^2], positive upright; 0 leaves it out
+    load : further known torque on the link at the samples [N m, or per unit inertia without ``inertia``], shape (N,)
+    translational : units of a translating mass
+    progress : told the stage in words and the share of the work done
+
+    Raises
+    ------
+    BadInput
+        A record without the motion of the link, or an inertia that is not positive.
+    """
+    if inertia is not None and not (np.isfinite(inertia) and inertia > 0.0):
+        raise BadInput(f"--inertia {inertia:g}: wanted a positive number of kg m^2 (kg for a translating mass)")
+    tell = progress or (lambda stage, share: None)
+    motion = _read(record, inertia, gravity, load)
+    per_inertia = inertia is None and record.kind != "force"
+    known = 1.0 if per_inertia else inertia
+    units = [unit_text(unit, translational=translational, per_inertia=per_inertia) for unit in UNITS]
+    tell("Hilbert transform", 0.1)
+    by_phase = hilbert_fundamental(motion.t, motion.pace, decaying=not motion.driven)
+    hilbert = _method("hilbert", by_phase, motion, known, units)
+    tell("wavelet transform", 0.4)
+    wavelet = _method("wavelet", wavelet_fundamental(motion.t, motion.pace), motion, known, units, beside=by_phase)
+    noise = {record.observed_name: motion.noise}
+    return Skeletons(record, hilbert, wavelet, per_inertia, translational, _together(hilbert, wavelet), noise, known)
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """Signals of shape (N,): ``pace`` is what sets the frequency; ``smooth`` is z less its noise, ``noise`` what was taken off,
+    ``kept_noise`` the share of its variance that stays."""
+
+    t: np.ndarray
+    z: np.ndarray
+    y: np.ndarray
+    torque: np.ndarray
+    pace: np.ndarray
+    smooth: np.ndarray
+    driven: bool
+    noise: float
+    kept_noise: float
+    force: bool
+
+
+def _read(record: Record, inertia: float | None, gravity: float, load: np.ndarray | None) -> _Motion:
+    """The channels as needed, fast records averaged down, noise estimated."""
+    if record.kind == "transmitted":
+        raise BadInput(
+            f"{record.path or 'the record'}: has the base motion x and the transmitted torque T but no motion of the link; "
+            "wanted z or y for a skeleton"
+        )
+    channels, zero = record.channels, np.zeros(record.samples)
+    x, force = channels.get("x", zero), channels.get("F", zero)
+    z = channels["z"] if "z" in channels else channels["y"] - x
+    y = channels["y"] if "y" in channels else z + x
+    torque = force + (0.0 if load is None else np.asarray(load, float)) + gravity * (inertia or 1.0) * y
+    driven = record.kind != "free_decay"
+    signals = [z, y, torque, {"base_motion": x, "force": force}.get(record.kind, z)]
+    samples = record.samples if driven else _until_quiet(z)
+    fastest = max(_fastest(values, record.dt) for values in (z, signals[3]))
+    group = max(1, int(record.rate_hz / (FINEST * max(fastest, 1e-9))))
+    whole = samples // group * group
+    t, z, y, torque, pace = (v[:whole].reshape(-1, group).mean(axis=1) for v in (record.t, *signals))
+    smooth, noise, share = _denoise(t, z)
+    if driven and record.kind == "base_motion":
+        pace = _denoise(t, pace)[0]
+    return _Motion(t, z, y, torque, pace if driven else smooth, smooth, driven, noise, share, record.kind == "force")
+
+
+def _until_quiet(z: np.ndarray) -> int:
+    """Samples of a decay until it stays close to where it ends."""
+    away = np.abs(z - np.median(z[-max(8, z.size // 50) :]))
+    return max(16, int(np.flatnonzero(away > QUIET * np.max(away))[-1]) + 1)
+
+
+def _fastest(values: np.ndarray, dt: float) -> float:
+    """Frequency [Hz] below which 99 % of the power of the signal's rate lie."""
+    power = np.abs(np.fft.rfft(values - np.mean(values))) ** 2
+    frequencies = np.fft.rfftfreq(values.size, dt)
+    share = np.cumsum(power * frequencies**2)
+    return float(frequencies[np.searchsorted(share, 0.99 * share[-1])]) if share[-1] > 0.0 else 0.0
+
+
+def _denoise(t: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, float, float]:
+    window = max(0.1, 60.0 * float(t[1] - t[0]))
+    fitted = fit_spline(t, values, t[0], window / choose_intervals(t, values, window))
+    return fitted(t), fitted.noise, min(1.0, fitted.coefficients.size / t.size)
+
+
+def _method(
+    name: str,
+    along: Fundamental | None,
+    motion: _Motion,
+    inertia: float | None,
+    units: list[str],
+    *,
+    beside: Fundamental | None = None,
+) -> Skeleton:
+    """One method: amplitudes along its fundamental, modal curves, masks, inversion, masks again with the play known."""
+    if along is None:
+        return _nothing(name, "no oscillation of at least eight cycles was found", units)
+    terms = _terms(along, motion)
+    mass = inertia or 1.0
+    stiffness, damping = modal(terms.position, terms.velocity, terms.torque / mass - terms.acceleration)
+    mixed, wild = _impure(along, motion, beside)
+    fast = masks.passes_fast(along, terms.position)
+    passing = "the amplitude changes too fast, as past a resonance,"
+    drive = "the drive" if motion.driven else "the motion"
+    repeat = "z does not repeat with the drive's cycles" if motion.driven else "z is not one oscillation that dies away"
+    found = [
+        masks.make_mask("ends", along, ~along.whole, ""),
+        masks.make_mask("mixed", along, mixed & along.whole, f"{drive} is not one frequency at a time"),
+        masks.make_mask("aperiodic", along, wild & ~mixed & along.whole, repeat),
+        masks.make_mask("fast", along, fast & ~mixed & ~wild & along.whole, passing),
+    ]
+    keep = along.whole & ~mixed & ~wild & ~fast & (np.abs(terms.position) > 4.0 * motion.noise * np.sqrt(motion.kept_noise))
+    base = Skeleton(
+        name, {}, along.t, along.omega / (2.0 * np.pi), np.abs(terms.position),
+        np.abs(along.of(motion.pace)) if motion.driven else None, masks.peaks(along, motion.t, motion.smooth), stiffness, damping,
+        keep, tuple(found), along=along, terms=terms,
+    )  # fmt: skip
+    broken = np.sum(along.whole & (mixed | wild)) > 0.5 * np.sum(along.whole)
+    first = None if broken else invert(terms, keep, inertia=inertia)
+    if first is None:
+        return _refused(base, mixed, wild, units)
+    peak = masks.peaks(along, motion.t, motion.smooth - first.centre)
+    inside = keep & (peak < first.values[0])
+    keep &= ~inside
+    found.append(masks.make_mask("inside", along, inside, "z stays inside the play", "nothing there tells its stiffness"))
+    last = invert(terms, keep, inertia=inertia) if inside.any() else first
+    base = replace(base, kept=keep, masks=tuple(found), peak=peak)
+    if last is None:
+        return _empty(base, "z touches the edges of the play in too few cycles", units)
+    final = _with_allowance(last, terms, motion, keep, inertia)
+    return _judged(base, final, motion, inertia, units)
+
+
+def _impure(along: Fundamental, motion: _Motion, beside: Fundamental | None) -> tuple[np.ndarray, np.ndarray]:
+    """Where the drive is mixed and where z does not repeat, (M,) each.
+
+    The wavelet's carrier is rough where a sweep is too quick for its atoms; ``beside`` then may vouch for the signal.
+    """
+    shares = []
+    for other in (along, beside):
+        if other is None:
+            continue
+        level = np.ones(motion.t.size)
+        if not motion.driven:
+            size = np.abs(other.of(motion.z))
+            level = np.interp(motion.t, other.t, np.maximum(size, 1e-6 * float(np.max(size))))
+        pair = (
+            masks.outside(other, motion.t, motion.pace / level, 1) if motion.driven else np.zeros(other.t.size),
+            masks.outside(other, motion.t, motion.smooth / level, masks.HARMONICS, cycles=masks.REPEATS),
+        )
+        shares.append([np.interp(along.t, other.t, share) for share in pair])
+    mixed, wild = np.min(shares, axis=0)
+    return mixed > masks.MIXED_DRIVE, wild > masks.APERIODIC
+
+
+def _terms(along: Fundamental, motion: _Motion) -> Terms:
+    torque = along.of(motion.torque) if np.any(motion.torque) else np.zeros(along.t.size, complex)
+    return Terms(
+        along, along.of(motion.z), along.of(motion.z, 1), along.of(motion.y, 2), torque, motion.t, motion.smooth
+    )
+
+
+def _with_allowance(found: Inversion, terms: Terms, motion: _Motion, keep: np.ndarray, inertia: float | None) -> Inversion:
+    """Errors widened by what the choice of window and the rest of the noise do to the values.
+
+    Half of what changes when the windows are doubled is added in quadrature. Noise rounds the corner of the dead zone: the
+    bias grows with its variance, so the raw samples beside the smoothed ones tell how much is left; it is taken off, and
+    its size added too.
+    """
+    variance, values = found.covariance.copy(), found.values.copy()
+    wide = invert(_terms(terms.along.wider(), motion), keep, inertia=inertia)
+    shifts = [] if wide is None else [0.5 * (wide.values - values)]
+    if motion.noise > 0.01 * values[0]:
+        raw = invert(replace(terms, z=motion.z), keep, inertia=inertia, centre=found.centre)
+        if raw is not None:
+            bias = (raw.values - values) * motion.kept_noise / max(1.0 - motion.kept_noise, 0.1)
+            values = values - bias
+            shifts.append(bias)
+    # The joint's three numbers should not care which amplitudes told them.
+    shifts.append(0.5 * np.where(np.abs(found.drift) > DRIFTED * found.drift_stderr, found.drift, 0.0))
+    shifts.append(FLOOR * np.abs(values))
+    for shift in shifts:
+        variance += np.diag(shift**2)
+    return replace(found, values=values, covariance=variance)
+
+
+def _judged(base: Skeleton, found: Inversion, motion: _Motion, inertia: float | None, units: list[str]) -> Skeleton:
+    """Values in words of the interface: total play instead of half, None where a value would mislead."""
+    factors = (2.0, 1.0, 1.0, 1.0)
+    names = (*NAMES, "inertia") if inertia is None else NAMES
+    if inertia is None:  # the curves waited for the inertia that only the inversion tells
+        assert base.terms is not None
+        terms, mass = base.terms, found.values[3]
+        stiffness, damping = modal(terms.position, terms.velocity, terms.torque / mass - terms.acceleration)
+        base = replace(base, stiffness=stiffness, damping=damping)
+    reasons = _reasons(found, base)
+    parameters, warnings = {}, [m.sentence for m in base.masks if m.sentence and m.name != "ends"]
+    for number, name in enumerate(names):
+        value, error = factors[number] * found.values[number], factors[number] * found.stderr[number]
+        why = reasons.get(name, "")
+        if not why and not (np.isfinite(error) and error < POOR * abs(value)):
+            why = f"its standard error is {100.0 * error / max(abs(value), 1e-300):.0f} % of its value"
+        ends = (float(value - found.reach * error), float(value + found.reach * error))
+        unit = units[(*NAMES, "inertia").index(name)]
+        parameters[name] = Value(None, None, None, unit, why) if why else Value(float(value), float(error), ends, unit)
+    if motion.noise > LOUD * found.values[0]:
+        share = motion.noise / found.values[0]
+        warnings.append(f"the noise of z is {100 * share:.0f} % of the half play: its edges are blurred, trust the play less")
+    drifted = np.abs(found.drift) > DRIFTED * found.drift_stderr
+    if np.any(drifted[:3]):
+        worst = int(np.argmax(np.abs(found.drift[:3]) / np.maximum(found.drift_stderr[:3], 1e-300)))
+        percent = 100.0 * found.drift[worst] / abs(found.values[worst])
+        warnings.append(
+            f"large amplitudes tell another {NAMES[worst]} than small ones ({percent:+.2g} %): "
+            "the joint has more to it than play, stiffness and damping"
+        )
+    return replace(base, parameters=parameters, centre=found.centre, misfit=found.misfit, warnings=tuple(warnings))
+
+
+def _reasons(found: Inversion, base: Skeleton) -> dict[str, str]:
+    """Why a value is not told, by name."""
+    half, error = found.values[0], found.stderr[0]
+    if half > 0.93 * found.peak or found.values[1] <= 0.0:
+        return dict.fromkeys(NAMES[:2], "z never goes beyond the play, so its contact is not seen")
+    small, large = np.quantile(base.amplitude[base.kept], [0.03, 0.97])
+    if large < NO_SWEEP * small:
+        return dict.fromkeys(NAMES[:2], "the motion is steady: one amplitude tells play and stiffness together, not apart")
+    if half < 3.0 * error or half < 2e-3 * found.peak:
+        return {"backlash": "no play was seen: the stiffness does not depend on the amplitude"}
+    return {}
+
+
+def _refused(base: Skeleton, mixed: np.ndarray, wild: np.ndarray, units: list[str]) -> Skeleton:
+    whole = max(1, int(np.sum(base.along.whole))) if base.along is not None else 1
+    if np.sum(mixed) > 0.2 * whole:  # a mixed drive makes a motion that does not repeat, too
+        why = "the drive holds many frequencies at once (multisine, noise); a skeleton needs one at a time"
+    elif np.sum(wild) > 0.5 * whole:
+        why = "the response does not repeat with the drive's cycles (chaos, impacts, or too much noise)"
+        if base.drive is None:
+            why = "the motion is not one oscillation that dies away slowly (too much damping, or noise)"
+    else:
+        why = f"only {int(np.sum(base.kept)) // 2} cycles are fit to be used, wanted 20"
+    return _empty(base, why, units)
+
+
+def _empty(base: Skeleton, why: str, units: list[str]) -> Skeleton:
+    parameters = {name: Value(None, None, None, unit, why) for name, unit in zip(NAMES, units)}
+    return replace(base, parameters=parameters, why=why, warnings=(why,), kept=np.zeros(base.t.size, bool))
+
+
+def _nothing(name: str, why: str, units: list[str]) -> Skeleton:
+    none = np.zeros(0)
+    bare = Skeleton(name, {}, none, none, none, None, none, none, none, np.zeros(0, bool))
+    return _empty(bare, why, units)
+
+
+def _together(hilbert: Skeleton, wavelet: Skeleton) -> tuple[str, ...]:
+    """Both methods' warnings, those about the same thing once, in the words of the method that comes first."""
+    kinds = {mask.sentence: mask.name for skeleton in (hilbert, wavelet) for mask in skeleton.masks if mask.sentence}
+    told: dict[str, str] = {}
+    for sentence in (*wavelet.warnings, *hilbert.warnings):
+        told.setdefault(kinds.get(sentence, " ".join(sentence.split()[:2])), sentence)
+    return tuple(told.values())

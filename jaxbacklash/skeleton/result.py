@@ -1,0 +1,141 @@
+"""What a skeleton tells: parameters with intervals or reasons, curves over amplitude, masked stretches."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from ..records import Record
+from .fundamental import Fundamental
+from .inversion import Terms
+from .masks import Mask
+
+NAMES = ("backlash", "stiffness", "damping")
+
+
+@dataclass(frozen=True)
+class Value:
+    """One parameter in ``unit``; errors allow for correlated residuals. All are None, with a ``why``, where there is no value."""
+
+    value: float | None
+    stderr: float | None
+    ci95: tuple[float, float] | None
+    unit: str
+    why: str = ""
+
+    def as_json(self) -> dict[str, Any]:
+        """The entry of result.json; a null value has its ``why``."""
+        ends = None if self.ci95 is None else list(self.ci95)
+        entry: dict[str, Any] = {"value": self.value, "stderr": self.stderr, "ci95": ends, "unit": self.unit}
+        return entry | ({"why": self.why} if self.why else {})
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A quantity over amplitude in bins: ``stderr`` of a bin's mean counts points four cycles apart as independent."""
+
+    amplitude: np.ndarray
+    mean: np.ndarray
+    stderr: np.ndarray
+
+
+@dataclass(frozen=True)
+class Skeleton:
+    """One method's answer; arrays have one entry a point of the skeleton, shape (M,).
+
+    Attributes
+    ----------
+    method : ``"hilbert"`` or ``"wavelet"``
+    parameters : ``backlash`` (total play), ``stiffness``, ``damping``, and ``inertia`` where a measured force told it
+    t : times [s]
+    frequency : of the carrier [Hz]
+    amplitude, drive : envelopes of z and of what drives it (None in a free decay) [unit of the channel]
+    peak : congruent envelope of z, the largest value within a cycle
+    stiffness : modal stiffness :math:`\\omega_0^2(A)` [1/s^2], (2.4a), (3.6)
+    damping : modal damping :math:`h_0(A)` [1/s], (2.4b)
+    kept : points that count
+    masks : why the others do not
+    centre : middle of the play in z
+    misfit : share of the torque that the fitted joint leaves (rms)
+    warnings : sentences
+    why : why there is nothing, empty if there is something
+    """
+
+    method: str
+    parameters: dict[str, Value]
+    t: np.ndarray
+    frequency: np.ndarray
+    amplitude: np.ndarray
+    drive: np.ndarray | None
+    peak: np.ndarray
+    stiffness: np.ndarray
+    damping: np.ndarray
+    kept: np.ndarray
+    masks: tuple[Mask, ...] = ()
+    centre: float = 0.0
+    misfit: float | None = None
+    warnings: tuple[str, ...] = ()
+    why: str = ""
+    along: Fundamental | None = field(default=None, repr=False)
+    terms: Terms | None = field(default=None, repr=False)
+
+    @property
+    def restoring_force(self) -> np.ndarray:
+        """(3.7): f_s = A omega_0^2(A) per unit inertia, (M,)."""
+        return self.amplitude * self.stiffness
+
+    @property
+    def damping_force(self) -> np.ndarray:
+        """(3.8): f_d = 2 h_0(A) A' with A' the amplitude of the speed, omega A, per unit inertia, (M,)."""
+        return 2.0 * self.damping * 2.0 * np.pi * self.frequency * self.amplitude
+
+    @property
+    def masked_fraction(self) -> float:
+        """Share of the record's time that does not count."""
+        if self.t.size < 2:
+            return 1.0
+        return float(1.0 - np.sum(np.gradient(self.t)[self.kept]) / (self.t[-1] - self.t[0]))
+
+    def curve(self, what: str, bins: int = 20) -> Curve:
+        """``"stiffness"``, ``"damping"``, ``"restoring_force"``, ``"damping_force"`` or ``"frequency"`` over amplitude.
+
+        Bins hold equal numbers of kept points; empty where fewer than eight points are kept.
+        """
+        values, amplitude = getattr(self, what)[self.kept], self.amplitude[self.kept]
+        if values.size < 8:
+            return Curve(np.zeros(0), np.zeros(0), np.zeros(0))
+        order = np.argsort(amplitude)
+        parts = np.array_split(order, min(bins, max(1, values.size // 6)))
+        mean = np.array([np.mean(values[part]) for part in parts])
+        spread = np.array([np.std(values[part], ddof=1) / np.sqrt(max(1.0, part.size / 8.0)) for part in parts])
+        return Curve(np.array([np.mean(amplitude[part]) for part in parts]), mean, spread)
+
+
+@dataclass(frozen=True)
+class Skeletons:
+    """Both methods on one record, see `skeleton`."""
+
+    record: Record
+    hilbert: Skeleton
+    wavelet: Skeleton
+    per_inertia: bool
+    translational: bool
+    warnings: tuple[str, ...]
+    noise: dict[str, float]
+    inertia: float | None
+
+    @property
+    def methods(self) -> tuple[Skeleton, Skeleton]:
+        return self.hilbert, self.wavelet
+
+    @property
+    def masked_fraction(self) -> float:
+        """Share of the record's time that neither method uses, the smaller of the two."""
+        return min(self.hilbert.masked_fraction, self.wavelet.masked_fraction)
+
+    def __str__(self) -> str:
+        from .print_skeleton import text
+
+        return text(self)
