@@ -223,6 +223,33 @@ def simulate(
     )  # fmt: skip
 
 
+@app.command(
+    "map", epilog="Example: jaxbacklash map --inverse-alpha 1:5:256 --zeta 0.005:0.03:64 --out case1.nc"
+)
+def map_(
+    case: Annotated[int, typer.Option("--case", help="The paper's CASE 1 or 2, in dimensionless form")] = 1,
+    inverse_alpha: Annotated[
+        str | None, typer.Option("--inverse-alpha", help="k_0 x_0 / A: FROM:TO:COUNT, or one value; default: the case's own")
+    ] = None,
+    zeta: Annotated[str | None, typer.Option("--zeta", help="Damping ratio c / (2 m omega_0), likewise")] = None,
+    omega: Annotated[str | None, typer.Option("--omega", help="Drive frequency over omega_0, likewise")] = None,
+    periods: Annotated[int, typer.Option("--periods", help="Periods of the drive that are followed")] = 400,
+    skip: Annotated[int, typer.Option("--skip", help="Of these, how many to leave out as transient")] = 100,
+    samples: Annotated[int | None, typer.Option("--samples", help="Stroboscopic samples kept, the last ones; default 32")] = None,
+    start: Annotated[str, typer.Option("--start", help="Position and speed at tau = 0 in half plays: P,V")] = "0,0",
+    out: Annotated[Path, typer.Option("--out", help="netCDF file to write; a page and a picture go beside it")] = Path("map.nc"),
+    json: Json = False,
+    seed: Seed = 0,
+) -> None:
+    """Map the largest Lyapunov exponent and the period of the motion over backlash, damping and drive frequency."""
+    from .commands import map as command
+
+    command.run(
+        case, inverse_alpha=inverse_alpha, zeta=zeta, omega=omega, periods=periods, skip=skip, samples=samples, start=start,
+        out=out, as_json=json,
+    )  # fmt: skip
+
+
 @app.command(epilog="Example: jaxbacklash demo --out demo")
 def demo(
     out: Annotated[Path, typer.Option("--out", help="Folder for what the demo makes")] = Path("jaxbacklash-demo"),

@@ -36,6 +36,19 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+FUSION = "xla_cpu_use_multi_output_fusion"
+
+
+def prepare_for_maps() -> None:
+    """Ask the compiler to compute what several arrays share once, which the exact steps of maps gain a factor of three from.
+
+    To be called before the first computation; later it changes nothing but the speed of programs to come.
+    """
+    flags = os.environ.get("XLA_FLAGS", "")
+    if FUSION not in flags:
+        os.environ["XLA_FLAGS"] = f"{flags} --xla_backend_extra_options={FUSION}".strip()
+
+
 def start(*, cache: bool = True) -> None:
     """Switch to double precision, ask for wide vectors and one device a core, and keep compiled programs for the next run."""
     import jax

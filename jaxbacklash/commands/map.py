@@ -1,0 +1,172 @@
+"""``jaxbacklash map``."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .. import __version__, program
+from ..dynamics.family import CASES, PaperCase
+from ..dynamics.follow import compile_exact
+from ..dynamics.labels import need_xarray, write_netcdf
+from ..dynamics.maps import Request, request, run_map
+from ..errors import BadInput
+from .common import json_text, progress
+
+MOST = 10_000_000
+DEFAULTS = {"inverse_alpha": "1:5:256", "zeta": "0.005:0.03:64"}
+
+
+def run(
+    case: int, *, inverse_alpha: str | None, zeta: str | None, omega: str | None, periods: int, skip: int, samples: int | None,
+    start: str, out: Path, as_json: bool,
+) -> None:  # fmt: skip
+    """Check, compute tile by tile beside the output, write the map, draw it, and tell."""
+    program.prepare_for_maps()
+    begun = time.perf_counter()
+    if case not in CASES:
+        raise BadInput(f"--case {case}: wanted 1 or 2")
+    if out.suffix.lower() not in (".nc", ".nc4"):
+        raise BadInput(f"--out {out}: found the suffix {out.suffix!r}, wanted .nc")
+    need_xarray()
+    wanted = read_request(case, {"inverse_alpha": inverse_alpha, "zeta": zeta, "Omega": omega}, periods, skip, samples, start)
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise BadInput(f"--out {out}: cannot make its folder ({error.strerror})") from None
+    store = out.with_name(out.name + ".tiles")
+    ready = time.perf_counter()
+    start_up = process_age() or ready - begun
+    with progress(as_json) as tell:
+        tell("compiling", 0.0)
+        compile_exact(int(np.prod(wanted.tile)), wanted.plan)
+        compiled = time.perf_counter()
+        map_ = run_map(wanted, store=store, progress=tell)
+        write_netcdf(map_, out)
+        computed = time.perf_counter()
+        map_ = map_.load()
+        shutil.rmtree(store)
+        result: dict[str, Any] = {
+            "schema": 1, "command": "map", "version": __version__, "case": case, "cells": wanted.cells, "periods": periods,
+            "skip": skip, "axes": {name: [values[0], values[-1], len(values)] for name, values in wanted.axes},
+            "solver": map_.attrs["solver"], **counts(map_), "out": str(out),
+            "wall_s": {
+                "start_up": round(start_up, 3), "compile": round(compiled - ready, 3),
+                "run": round(computed - compiled, 3),
+            },
+        }  # fmt: skip
+        tell("drawing", 1.0)
+        picture(map_, result, out)
+    if as_json:
+        sys.stdout.write(json_text(result))
+    else:
+        print("\n".join(words(result)))
+        print(f"written: {out}, {out.with_suffix('.html').name}, {out.with_suffix('.png').name}")
+
+
+def read_request(
+    case: int, given: dict[str, str | None], periods: int, skip: int, samples: int | None, start: str
+) -> Request:
+    """The request that the options describe; a parameter with one value is a constant."""
+    axes: dict[str, np.ndarray] = {}
+    fixed: dict[str, np.ndarray] = {}
+    if all(text is None for text in given.values()):
+        given = {**given, **DEFAULTS}
+    for name, text in given.items():
+        if text is None:
+            continue
+        values = read_range(f"--{name.lower().replace('_', '-')}", text)
+        (axes if values.size > 1 else fixed)[name] = values
+    if not axes:
+        raise BadInput("map: every parameter has one value, wanted a range FROM:TO:COUNT for at least one of them")
+    cells = int(np.prod([values.size for values in axes.values()]))
+    if cells > MOST:
+        raise BadInput(f"map: {cells} cells, wanted at most {MOST}")
+    family = PaperCase(case, **{name: float(values[0]) for name, values in fixed.items()})
+    kept = min(32, max(1, periods - skip)) if samples is None else samples
+    return request(family, axes, periods=periods, skip=skip, samples=kept, start=read_start(start))
+
+
+def read_range(option: str, text: str) -> np.ndarray:
+    """``FROM:TO:COUNT`` as evenly spaced values, or the one value that is given; all above zero."""
+    parts = text.split(":")
+    wanted = "wanted FROM:TO:COUNT or one number, above 0"
+    try:
+        numbers = [float(part) for part in parts[:2]]
+        count = int(parts[2]) if len(parts) == 3 else 1
+    except ValueError:
+        raise BadInput(f"{option} {text}: {wanted}") from None
+    if len(parts) not in (1, 3) or count < 1 or not all(0.0 < n < np.inf for n in numbers):
+        raise BadInput(f"{option} {text}: {wanted}")
+    return np.linspace(numbers[0], numbers[-1], count)
+
+
+def read_start(text: str) -> tuple[float, float]:
+    """``P,V``: where every cell starts."""
+    try:
+        p, v = (float(part) for part in text.split(","))
+    except ValueError:
+        raise BadInput(f"--start {text}: wanted position and speed, two numbers with a comma between") from None
+    if not np.isfinite([p, v]).all():
+        raise BadInput(f"--start {text}: wanted finite numbers")
+    return p, v
+
+
+def counts(map_: Any) -> dict[str, Any]:
+    """How many cells are chaotic, periodic and undecided, and the largest exponent."""
+    period, exponent = map_["period"].values, map_["lyapunov"].values
+    known = exponent[np.isfinite(exponent)]
+    found, number = np.unique(period[period > 0], return_counts=True)
+    return {
+        "chaotic": int((period == 0).sum()), "unsettled": int((period == -1).sum()),
+        "unresolved": int(map_["unresolved"].values.sum()),
+        "by_period": {str(int(T)): int(n) for T, n in zip(found, number)},
+        "largest_exponent": {
+            "value": float(known.max()) if known.size else None, "unit": "1/tau",
+            **({} if known.size else {"why": "no cell could be followed to its end"}),
+        },
+    }  # fmt: skip
+
+
+def words(result: dict[str, Any]) -> list[str]:
+    """What a person reads."""
+    cells = result["cells"]
+    regular = sum(result["by_period"].values())
+    share = {name: 100.0 * n / cells for name, n in (("chaotic", result["chaotic"]), ("periodic", regular))}
+    largest = result["largest_exponent"]["value"]
+    wall = result["wall_s"]
+    return [
+        f"CASE {result['case']}: {cells} cells, {result['periods']} periods each, the first {result['skip']} left out; "
+        f"{result['solver']}.",
+        f"{share['chaotic']:.1f} % of the cells are chaotic, {share['periodic']:.1f} % periodic, "
+        f"{100.0 - sum(share.values()):.1f} % unresolved"
+        + (f"; largest exponent {largest:.4g} per unit of tau." if largest is not None else "."),
+        f"start-up {wall['start_up']:.1f} s, compiling {wall['compile']:.1f} s, run {wall['run']:.1f} s",
+    ]
+
+
+def picture(map_: Any, result: dict[str, Any], out: Path) -> None:
+    """The page and the picture beside the map."""
+    from ..report.map_report import map_report
+
+    png = map_report(map_, result, " ".join(words(result)[:2]), out.with_suffix(".html"))
+    target = out.with_suffix(".png")
+    try:
+        target.write_bytes(png)
+    except OSError as error:
+        raise BadInput(f"--out {target}: cannot be written ({error.strerror})") from None
+
+
+def process_age() -> float | None:
+    """Seconds since this process began, its imports included; None where the system does not tell."""
+    try:
+        ticks = float(Path("/proc/self/stat").read_text().rsplit(")", 1)[1].split()[19])
+        return float(Path("/proc/uptime").read_text().split()[0]) - ticks / os.sysconf("SC_CLK_TCK")
+    except (OSError, ValueError, IndexError):
+        return None

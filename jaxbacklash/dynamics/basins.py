@@ -1,0 +1,99 @@
+"""Basins of attraction: which of the coexisting attractors each start leads to.
+
+Periodic attractors are told apart by their points: two motions are on the same one if every stroboscopic point of one lies on a
+point of the other. Chaotic motions never repeat, so all of them at one parameter count as one attractor unless the places they
+keep to are apart: their middle and spread are compared.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from .family import Family
+from .follow import follow
+from .periodicity import CHAOTIC, periodicity
+from .plan import Plan
+
+Array = Any
+
+
+class Attractor(NamedTuple):
+    """One attractor: ``period`` (0: chaotic), largest exponent ``lyapunov``, its stroboscopic points ``p``, ``v`` (K,), and the
+    ``share`` of the starts that lead to it."""
+
+    period: int
+    lyapunov: float
+    p: np.ndarray
+    v: np.ndarray
+    share: float
+
+    def __str__(self) -> str:
+        kind = "chaotic" if self.period == CHAOTIC else f"period {self.period}"
+        return f"{kind}, exponent {self.lyapunov:.4g}"
+
+
+class Basins(NamedTuple):
+    """``number`` (M, N): which of ``attractors`` the start ``y`` (M,), ``dy`` (N,) leads to, -1 where it settles on none."""
+
+    y: np.ndarray
+    dy: np.ndarray
+    number: np.ndarray
+    attractors: list[Attractor]
+
+
+def basins(
+    family: Family, given: dict[str, float], y: Any, dy: Any, *, periods: int = 400, samples: int = 32, near: float = 1e-3
+) -> Basins:
+    """Follow a grid of starts and sort them by where they end.
+
+    Parameters
+    ----------
+    family, given : whose basins, at which parameter values
+    y, dy : (M,), (N,) starting positions and speeds
+    periods, samples : how long each start is followed and how many points it is judged by
+    near : largest distance between points of the same periodic attractor, in half plays (rad where there is no play)
+
+    Returns
+    -------
+    Basins, the attractor with the largest share first
+    """
+    y, dy = np.asarray(y, dtype=float), np.asarray(dy, dtype=float)
+    grid = np.meshgrid(y, dy, indexing="ij")
+    one = np.ones(grid[0].size)
+    system, drive = family.build({name: value * one for name, value in given.items()})
+    plan = Plan(periods, max(0, min(periods // 2, periods - max(100, samples))), samples)
+    found, _ = follow(system, drive, grid[0].ravel(), grid[1].ravel(), plan)
+    p, v, exponent = (np.asarray(a) for a in (found.p, found.v, found.lyapunov))
+    period = periodicity(p, v, exponent, np.asarray(found.stderr))
+    number = np.full(one.size, -1)
+    kept: list[tuple[int, np.ndarray]] = []
+    for k in np.argsort(period == CHAOTIC, kind="stable"):
+        if period[k] < 0:
+            continue
+        points = np.stack([p[:, k], v[:, k]], axis=1)[-(int(period[k]) or samples) :]
+        for j, (T, others) in enumerate(kept):
+            if period[k] == T and _same(T, points, others, near):
+                number[k] = j
+                break
+        else:
+            number[k] = len(kept)
+            kept.append((int(period[k]), points))
+    attractors, order = [], np.argsort([-(number == j).sum() for j in range(len(kept))], kind="stable")
+    for j in order:
+        T, points = kept[j]
+        inside = number == j
+        attractors.append(Attractor(T, float(np.median(exponent[inside])), points[:, 0], points[:, 1], float(inside.mean())))
+    rank = np.append(np.argsort(order), -1)
+    return Basins(y, dy, rank[number].reshape(y.size, dy.size), attractors)
+
+
+def _same(period: int, points: np.ndarray, others: np.ndarray, near: float) -> bool:
+    if period != CHAOTIC:
+        return bool(cKDTree(others).query(points)[0].max() <= near)
+    apart = np.abs(points.mean(axis=0) - others.mean(axis=0))
+    # Middles of two chaotic runs on one attractor differ by the scatter of a mean; five of it, or half a play, is the same place.
+    scatter = np.hypot(points.std(axis=0), others.std(axis=0)) / np.sqrt(len(points))
+    return bool(np.all(apart <= np.maximum(5.0 * scatter, 0.5)))

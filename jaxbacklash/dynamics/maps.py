@@ -1,0 +1,230 @@
+"""Maps of exponent, period and stroboscopic samples over named parameters, as labelled datasets.
+
+Cells are computed tile by tile in one compiled program per tile shape, two or more tiles at a time, one on each core. With a
+store the tiles go to disk as they are done, see `tiles`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..errors import BadInput
+from .family import Family, PaperCase
+from .follow import follow
+from .periodicity import periodicity
+from .plan import Plan
+
+Array = Any
+Progress = Callable[[str, float], None]
+
+LANES = 1024
+"""Cells in a tile: their numbers stay in a core's own cache."""
+VARIABLES = {"lyapunov": "f8", "lyapunov_stderr": "f8", "period": "i4", "unresolved": "i1", "poincare": "f8"}
+"""What a map holds, and as what; `KEPT` has a leading dimension ``sample``."""
+KEPT = ("poincare",)
+
+
+def package_version() -> str:
+    """The version of this package, which stands above this layer but is loaded whenever a part of it is."""
+    return str(sys.modules[__name__.partition(".")[0]].__version__)
+
+
+@dataclass(frozen=True)
+class Request:
+    """Everything that decides a map's numbers: what, over which axes, how long, from where, in which tiles."""
+
+    family: Family
+    axes: tuple[tuple[str, tuple[float, ...]], ...]
+    plan: Plan
+    start: tuple[float, float]
+    tile: tuple[int, ...]
+    exact: bool | None = None
+
+    @property
+    def names(self) -> list[str]:
+        return [name for name, _ in self.axes]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return tuple(len(values) for _, values in self.axes)
+
+    @property
+    def cells(self) -> int:
+        return int(np.prod(self.shape))
+
+    def tiles(self) -> list[tuple[slice, ...]]:
+        """The map cut into boxes of the tile's shape, smaller at its far sides."""
+        cuts = [
+            [slice(i, min(i + step, size)) for i in range(0, size, step)] for size, step in zip(self.shape, self.tile)
+        ]
+        return [tuple(box) for box in product(*cuts)]
+
+    def fingerprint(self) -> str:
+        """A name for this map's numbers: two requests share it when they give the same bits."""
+        told = {
+            "family": self.family.identity(), "axes": self.axes, "start": self.start, "tile": self.tile, "exact": self.exact,
+            "plan": [self.plan.periods, self.plan.skip, self.plan.samples], "version": package_version(),
+        }  # fmt: skip
+        return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
+
+
+def request(
+    family: Family, axes: Mapping[str, Any], *, periods: int = 400, skip: int = 100, samples: int = 32,
+    start: tuple[float, float] = (0.0, 0.0), exact: bool | None = None, lanes: int = LANES,
+) -> Request:  # fmt: skip
+    """A checked request for a map over one or more axes, each the name of a parameter with its values, in order of dimension.
+
+    Raises
+    ------
+    BadInput
+        An unknown parameter, an axis without finite values, or a plan that cannot be followed.
+    """
+    if not axes:
+        raise BadInput("a map needs at least one axis")
+    checked = []
+    for name, values in axes.items():
+        family.unit(name)
+        numbers = np.asarray(values, dtype=float)
+        if numbers.ndim != 1 or not numbers.size or not np.all(np.isfinite(numbers)):
+            raise BadInput(f"axis {name}: wanted a list of finite numbers")
+        checked.append((name, tuple(float(v) for v in numbers)))
+    shape, room = [len(v) for _, v in checked], lanes
+    tile: list[int] = []
+    for size in reversed(shape):
+        tile.insert(0, min(size, max(1, room)))
+        room //= tile[0]
+    return Request(family, tuple(checked), Plan(periods, skip, samples), (float(start[0]), float(start[1])), tuple(tile), exact)
+
+
+def compute_tile(wanted: Request, box: tuple[slice, ...]) -> tuple[dict[str, np.ndarray], str]:
+    """The variables of one tile, each of the tile's shape (kept samples first), and the name of the solver."""
+    size, lanes = [s.stop - s.start for s in box], int(np.prod(wanted.tile))
+    grids = np.meshgrid(*(np.array(values)[s] for (_, values), s in zip(wanted.axes, box)), indexing="ij")
+    # A tile at the edge is filled up with its last cell, so that all tiles run the same program.
+    given = {name: np.pad(g.ravel(), (0, lanes - g.size), mode="edge") for name, g in zip(wanted.names, grids)}
+    system, drive = wanted.family.build(given)
+    one = np.ones(lanes)
+    found, solver = follow(system, drive, wanted.start[0] * one, wanted.start[1] * one, wanted.plan, exact=wanted.exact)
+    half, speed = _sizes(system)
+    number = {
+        "lyapunov": found.lyapunov, "lyapunov_stderr": found.stderr, "unresolved": found.unresolved, "poincare": found.p,
+        "period": periodicity(found.p, found.v, found.lyapunov, found.stderr, scale=half, speed=speed),
+    }  # fmt: skip
+    inside = int(np.prod(size))
+    arrays = {name: np.asarray(number[name]).astype(kind) for name, kind in VARIABLES.items()}
+    return {name: a[..., :inside].reshape(*a.shape[:-1], *size) for name, a in arrays.items()}, solver
+
+
+def _sizes(system: Any) -> tuple[Array, Array]:
+    """Lengths and speeds against which a return is judged: the half play, and that times the contact's frequency."""
+    if not system.has_play:
+        return 1.0, 1.0
+    half = 0.5 * np.asarray(system.contact.backlash)
+    return half, half * np.sqrt(np.asarray(system.contact.stiffness) / np.asarray(system.inertia))
+
+
+def run_map(
+    wanted: Request, *, store: str | os.PathLike[str] | None = None, client: Any = None, workers: int | None = None,
+    progress: Progress | None = None,
+) -> Any:  # fmt: skip
+    """Compute a map.
+
+    Parameters
+    ----------
+    wanted : from `request`
+    store : folder of tiles; a run that was stopped goes on there and gives the same bits. None: all in memory
+    client : a dask.distributed client whose workers compute the tiles; None: threads of this process
+    workers : threads; default: one a core
+    progress : called with words and the share done
+
+    Returns
+    -------
+    `xarray.Dataset` over the axes; from a store its arrays are read when they are needed
+
+    Raises
+    ------
+    BadInput
+        xarray (or zarr, for a store) is missing, or the store holds another map.
+    """
+    from .labels import dataset, dataset_from_store
+    from .tiles import MemoryTiles, TileStore
+
+    kept: Any = MemoryTiles(wanted) if store is None else TileStore(Path(store), wanted)
+    missing = [k for k, _ in enumerate(wanted.tiles()) if not kept.has(k)]
+    tell = Clock(progress, len(wanted.tiles()), len(missing))
+    for k, (numbers, solver) in _results(wanted, missing, client, workers):
+        kept.put(k, numbers, solver)
+        tell.one_more()
+    return dataset(wanted, kept) if store is None else dataset_from_store(wanted, kept)
+
+
+def _results(wanted: Request, missing: list[int], client: Any, workers: int | None) -> Iterator[tuple[int, Any]]:
+    boxes = wanted.tiles()
+    if client is not None:
+        from dask.distributed import as_completed as done
+
+        # pure=False: a worker that dies is asked again, never answered from a stale result.
+        futures = {client.submit(_on_worker, wanted, boxes[k], pure=False): k for k in missing}
+        for future in done(list(futures)):
+            yield futures.pop(future), future.result()
+        return
+    threads = workers or os.cpu_count() or 1
+    with ThreadPoolExecutor(threads) as pool:
+        # No more than a few tiles wait for the disk, so that memory stays bounded.
+        queue, running = iter(missing), {}
+        for k in queue:
+            running[pool.submit(compute_tile, wanted, boxes[k])] = k
+            if len(running) >= 2 * threads:
+                future = next(as_completed(running))
+                yield running.pop(future), future.result()
+        for future in as_completed(list(running)):
+            yield running[future], future.result()
+
+
+def _on_worker(wanted: Request, box: tuple[slice, ...]) -> Any:
+    from ..precision import enable_double_precision
+
+    enable_double_precision()
+    return compute_tile(wanted, box)
+
+
+class Clock:
+    """Tells the share of tiles that are done and how long the rest will take."""
+
+    def __init__(self, progress: Progress | None, tiles: int, missing: int) -> None:
+        self._progress = progress
+        self._tiles, self._missing, self._done, self._begun = tiles, missing, 0, time.monotonic()
+
+    def one_more(self) -> None:
+        self._done += 1
+        if self._progress is None:
+            return
+        left = (time.monotonic() - self._begun) / self._done * (self._missing - self._done)
+        share = (self._tiles - self._missing + self._done) / self._tiles
+        self._progress(f"tile {self._tiles - self._missing + self._done} of {self._tiles}, {_words(left)} to go", share)
+
+
+def _words(seconds: float) -> str:
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
+
+
+def paper_map(case: int, axes: Mapping[str, Any], **options: Any) -> Any:
+    """`run_map` of a case of the paper over ``inverse_alpha``, ``zeta`` and ``Omega``; options of `request` and `run_map`."""
+    later = {name: options.pop(name) for name in ("store", "client", "workers", "progress") if name in options}
+    if case not in (1, 2):
+        raise BadInput(f"case {case}: wanted 1 or 2")
+    return run_map(request(PaperCase(case), axes, **options), **later)

@@ -1,0 +1,193 @@
+"""Figures of what a model does: maps of exponent and period, exponent and bifurcation curves, basins of attraction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColormap
+from matplotlib.figure import Figure
+
+from .drawing import column, drawn_in_style, empty_figure, new_figure
+from .style import GAP, HELDOUT, INK, MEASURED, MEDIUM, MODEL, TALL, with_unit
+
+SIGNED = LinearSegmentedColormap.from_list("signed", ["#134a78", MEASURED, "#f4f4f2", MODEL, "#7a2c05"])
+SIGNED.set_bad(GAP)
+PERIODS = 6
+"""Periods that have a colour of their own; longer ones share one."""
+PERIOD_COLOURS = ["#8a8f98", "#3b0f0a", "#dcecf7", "#9cc9e8", "#2b83c6", "#0f9d78", "#8ccf6a", "#f1d33c", "#d9a01a"]
+PERIOD_NAMES = ["unresolved", "chaotic", *(str(T) for T in range(1, PERIODS + 1)), f"over {PERIODS}"]
+BASINS = [MEASURED, MODEL, HELDOUT, "#9467bd", "#e3c130", "#5b3a1e", "#d977a8", "#4a4f57"]
+LABELS = {"inverse_alpha": "1/α", "zeta": "ζ", "Omega": "Ω"}
+
+
+def axis_label(name: str, unit: str | None) -> str:
+    """A parameter as it stands beside an axis: ``1/α``, ``stiffness [N m/rad]``."""
+    return with_unit(LABELS.get(name, name), unit)
+
+
+@drawn_in_style
+def exponent_and_period_map(
+    x: Any, y: Any, exponent: Any, period: Any, *, names: Sequence[str], units: Sequence[str], exponent_unit: str
+) -> Figure:
+    """Two maps over two parameters: the largest exponent (zero is white) and the period of the motion.
+
+    Parameters
+    ----------
+    x, y : (M,), (N,) values of the two parameters, evenly spaced
+    exponent, period : (M, N); the period as `jaxbacklash.dynamics.periodicity` gives it
+    names, units : of x and y
+    exponent_unit : of the exponent
+
+    Returns
+    -------
+    Figure
+    """
+    x, y = column(x), column(y)
+    exponent, period = np.asarray(exponent, dtype=float).T, np.asarray(period).T
+    if not np.isfinite(exponent).any():
+        return empty_figure("No cell of this map could be followed.")
+    figure = new_figure(MEDIUM + 0.5)
+    left, right = figure.subplots(1, 2, sharex=True, sharey=True)
+    extent = (*_sides(x), *_sides(y))
+    known = exponent[np.isfinite(exponent)]
+    reach = max(float(np.quantile(np.abs(known), 0.995)), 1e-9)
+    image = left.imshow(exponent, vmin=-reach, vmax=reach, cmap=SIGNED, **_imaged(extent))
+    bar = figure.colorbar(image, ax=left, location="top", shrink=0.9, aspect=30)
+    bar.set_label(with_unit("largest exponent: orange chaotic, blue regular", exponent_unit), fontsize=8.0)
+    classes = np.clip(period, -1, PERIODS + 1) + 1
+    image = right.imshow(
+        classes, cmap=ListedColormap(PERIOD_COLOURS), norm=BoundaryNorm(np.arange(-0.5, 9.5), 9), **_imaged(extent)
+    )
+    bar = figure.colorbar(image, ax=right, location="top", shrink=0.9, aspect=30, ticks=range(9))
+    bar.ax.set_xticklabels(["none", "chaos", *PERIOD_NAMES[2:8], f">{PERIODS}"], fontsize=7.0)
+    bar.set_label("periods of the drive in one of the motion", fontsize=8.0)
+    for ax in (left, right):
+        ax.grid(visible=False)
+        ax.set_xlabel(axis_label(names[0], units[0]))
+    left.set_ylabel(axis_label(names[1], units[1]))
+    return figure
+
+
+@drawn_in_style
+def exponent_curve(
+    x: Any, exponent: Any, stderr: Any, *, name: str, unit: str, exponent_unit: str, samples: Any = None, title: str = ""
+) -> Figure:
+    """The largest exponent against one parameter with its error bar; below, if given, the bifurcation diagram.
+
+    Parameters
+    ----------
+    x : (N,) values of the parameter
+    exponent, stderr : (N,)
+    name, unit, exponent_unit : words for the axes
+    samples : (S, N) stroboscopic samples of the position [half plays, or the system's unit]; None: only the curve
+
+    Returns
+    -------
+    Figure
+    """
+    x, exponent, stderr = column(x), column(exponent), column(stderr)
+    figure = new_figure(TALL if samples is not None else MEDIUM)
+    axes = figure.subplots(2 if samples is not None else 1, 1, sharex=True, squeeze=False)[:, 0]
+    top = axes[0]
+    top.axhline(0.0, color=INK, lw=0.8)
+    wide = np.nan_to_num(2.0 * stderr)
+    top.fill_between(x, exponent - wide, exponent + wide, color=MODEL, alpha=0.25, lw=0, label="±2 standard errors")
+    top.plot(x, exponent, color=MODEL, lw=0.7)
+    top.plot(x, np.where(exponent > wide, exponent, np.nan), ".", color=MODEL, ms=4.0, mew=0, label="chaotic: above zero")
+    top.plot(x, np.where(exponent <= wide, exponent, np.nan), ".", color=MEASURED, ms=4.0, mew=0, label="not above zero")
+    top.set(ylabel=with_unit("largest exponent", exponent_unit), xlim=(x.min(), x.max()))
+    top.set_title(title)
+    top.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2)
+    if samples is not None:
+        scatter_samples(axes[1], x, np.asarray(samples), INK)
+    axes[-1].set_xlabel(axis_label(name, unit))
+    return figure
+
+
+def scatter_samples(ax: Axes, x: np.ndarray, samples: np.ndarray, colour: str, label: str | None = None) -> None:
+    """Stroboscopic samples against a parameter, as dots."""
+    many = np.broadcast_to(x, samples.shape)
+    ax.plot(many.ravel(), samples.ravel(), ".", ms=1.6, mew=0, color=colour, rasterized=True, label=label)
+    ax.set_ylabel("p at whole periods")
+    ax.axhspan(-1.0, 1.0, color=GAP, alpha=0.15, lw=0)
+
+
+@drawn_in_style
+def bifurcation_diagram(x: Any, branches: dict[str, Any], *, name: str, unit: str, length: str = "half plays") -> Figure:
+    """Stroboscopic samples against one parameter: swept up, swept down, and from many starts, one above the other.
+
+    Parameters
+    ----------
+    x : (N,) values of the parameter
+    branches : by a name for the legend, (..., N) samples
+    name, unit : of the parameter; length: unit of the samples
+
+    Returns
+    -------
+    Figure
+    """
+    x = column(x)
+    shown = {label: np.asarray(s, dtype=float).reshape(-1, x.size) for label, s in branches.items()}
+    if not shown:
+        return empty_figure("No samples to draw.")
+    figure = new_figure(1.1 + 1.7 * len(shown))
+    axes = figure.subplots(len(shown), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
+    for ax, (label, samples), colour in zip(axes, shown.items(), (MEASURED, MODEL, INK, HELDOUT)):
+        ax.axhspan(-1.0, 1.0, color=GAP, alpha=0.15, lw=0)
+        many = np.broadcast_to(x, samples.shape)
+        ax.plot(many.ravel(), samples.ravel(), ".", ms=1.1, mew=0, color=colour, rasterized=True)
+        ax.set(ylabel=f"p [{length}]", xlim=(x.min(), x.max()))
+        ax.set_title(label)
+        ax.grid(visible=False)
+    axes[-1].set_xlabel(axis_label(name, unit))
+    return figure
+
+
+@drawn_in_style
+def basin_picture(p: Any, v: Any, attractor: Any, *, words: Sequence[str], samples: Sequence[Any] = ()) -> Figure:
+    """Which attractor each start leads to.
+
+    Parameters
+    ----------
+    p, v : (M,), (N,) starting positions and speeds, evenly spaced
+    attractor : (M, N) number of the attractor, -1 where none was settled on
+    words : a name for each attractor
+    samples : for each attractor, (2, S) its stroboscopic positions and speeds; drawn as dots
+
+    Returns
+    -------
+    Figure
+    """
+    p, v = column(p), column(v)
+    number = np.asarray(attractor).T
+    count = max(1, len(words))
+    figure = new_figure(MEDIUM + 1.0)
+    ax = figure.add_subplot()
+    colours = [GAP, *(BASINS[k % len(BASINS)] for k in range(count))]
+    image = ax.imshow(
+        number + 1, cmap=ListedColormap(colours), norm=BoundaryNorm(np.arange(-0.5, count + 1.5), count + 1), alpha=0.75,
+        **_imaged((*_sides(p), *_sides(v))),
+    )  # fmt: skip
+    bar = figure.colorbar(image, ax=ax, ticks=range(count + 1))
+    bar.ax.set_yticklabels(["unsettled", *words], fontsize=8.0)
+    for dots in samples:
+        dots = np.asarray(dots, dtype=float)
+        ax.plot(dots[0], dots[1], "o", color="white", mec=INK, mew=0.8, ms=4.0 if dots.shape[1] < 30 else 1.5)
+    for edge in (-1.0, 1.0):
+        ax.axvline(edge, color=INK, lw=0.6, ls="--")
+    ax.set(xlabel="p at the start [half plays]", ylabel="p′ at the start", xlim=_sides(p), ylim=_sides(v))
+    ax.grid(visible=False)
+    return figure
+
+
+def _sides(values: np.ndarray) -> tuple[float, float]:
+    """The outer sides of evenly spaced cells."""
+    half = 0.5 * (values[-1] - values[0]) / max(values.size - 1, 1) or 0.5
+    return float(values[0] - half), float(values[-1] + half)
+
+
+def _imaged(extent: tuple[float, float, float, float]) -> dict[str, Any]:
+    return {"origin": "lower", "aspect": "auto", "extent": extent, "interpolation": "nearest"}

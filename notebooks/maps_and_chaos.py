@@ -1,0 +1,158 @@
+# ---
+# jupyter:
+#   jupytext:
+#     text_representation:
+#       extension: .py
+#       format_name: percent
+#   kernelspec:
+#     display_name: Python 3
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # Maps and chaos
+#
+# A loose joint that is shaken harmonically need not move harmonically. It may take two, three, ... periods of the drive for
+# one of its own, or never repeat. This tour follows the paper's oscillator (CASE 1) and shows where it does which.
+
+# %%
+import os
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import jaxbacklash as jb
+from jaxbacklash import dynamics, program
+from jaxbacklash.excitation import Harmonic
+from jaxbacklash.report import figures_maps as figures
+
+# %% [markdown]
+# Maps gain from telling the compiler about them before the first computation. Everything needs double precision.
+
+# %%
+program.prepare_for_maps()
+jb.start()
+tiny = bool(os.environ.get("JAXBACKLASH_TINY"))
+
+# %% [markdown]
+# ## One motion
+#
+# In units of the half play and of the contact's own time, p'' + 2 zeta p' + F(p) = alpha cos(Omega tau). Looked at once a
+# period of the drive, a periodic motion is a few points. This one is not.
+
+# %%
+case = dynamics.PaperCase(1)
+system, force = case.build({})
+points = dynamics.stroboscopic(system, force, points=100 if tiny else 4000)
+
+# %%
+figure, ax = plt.subplots(figsize=(6, 4), layout="constrained")
+ax.plot(points.z, points.dz, ".", ms=2)
+ax.set(xlabel="p", ylabel="p'", title="CASE 1 once a period, 1/alpha = 2")
+plt.show()
+
+# %% [markdown]
+# ## Lyapunov exponents
+#
+# They say how fast a small difference grows, or dies away. A positive one means chaos. The error bar tells how far a longer run
+# would still move the number. All exponents together sum to the rate at which volumes shrink, here -2 zeta = -0.04.
+
+# %%
+exponents = dynamics.lyapunov_spectrum(system, force, periods=60 if tiny else 2000, skip=20 if tiny else 100)
+print(exponents)
+print("sum", exponents.values.sum())
+
+# %% [markdown]
+# Any system of the package has exponents, dry friction and dampers of the contact included. Between its edges this one is
+# linear, so it was followed exactly; others go by located steps. Friction calms it:
+
+# %%
+with_friction = system.with_effects(jb.CoulombGround(0.05))
+print(dynamics.lyapunov_spectrum(with_friction, force, count=1, periods=30 if tiny else 400, skip=5 if tiny else 100))
+
+# %% [markdown]
+# ## Figures 2 and 3 of the paper
+#
+# The largest exponent and the bifurcation diagram against 1/alpha: to the right the force falls, or the play grows.
+
+# %%
+inverse_alpha = np.linspace(1.0, 5.0, 24 if tiny else 800)
+periods, skip = (50, 10) if tiny else (600, 200)
+line = dynamics.paper_map(1, {"inverse_alpha": inverse_alpha, "zeta": [0.02]}, periods=periods, skip=skip).isel(zeta=0)
+figures.exponent_curve(
+    inverse_alpha, line.lyapunov, line.lyapunov_stderr, name="inverse_alpha", unit="1", exponent_unit="1/tau",
+    samples=line.poincare.values,
+)
+
+# %% [markdown]
+# ## Swept up, swept down
+#
+# Where two motions are possible, the past decides. A sweep goes on from where the last value left the motion.
+
+# %%
+values = np.linspace(3.8, 4.8, 6 if tiny else 120)
+sweeps = dynamics.bifurcation(
+    case, "inverse_alpha", values, settle=10 if tiny else 60, samples=20, start_periods=40 if tiny else 300
+)
+figures.bifurcation_diagram(
+    values,
+    {"swept up": sweeps.swept_up, "swept down": sweeps.swept_down, "from eight starts": sweeps.from_starts},
+    name="inverse_alpha", unit="1",
+)
+
+# %% [markdown]
+# ## Basins of attraction
+#
+# At 1/alpha = 3 three motions stand side by side: one of period 1 and two of period 3 that mirror one another. Which one a
+# joint ends on depends on where it starts.
+
+# %%
+side = np.linspace(-3.0, 3.0, 12 if tiny else 200)
+found = dynamics.basins(case, {"inverse_alpha": 3.0}, side, side, periods=120 if tiny else 300)
+print(*found.attractors, sep="\n")
+figures.basin_picture(
+    side, side, found.number, words=[str(a) for a in found.attractors], samples=[np.stack([a.p, a.v]) for a in found.attractors]
+)
+
+# %% [markdown]
+# ## Two parameters at once
+#
+# A map is a labelled dataset. `jaxbacklash map` writes the same as netCDF.
+
+# %%
+axes = {"inverse_alpha": np.linspace(1.0, 5.0, 8 if tiny else 256), "zeta": np.linspace(0.005, 0.03, 4 if tiny else 64)}
+plane = dynamics.paper_map(1, axes, periods=periods, skip=skip)
+figures.exponent_and_period_map(
+    plane.inverse_alpha, plane.zeta, plane.lyapunov, plane.period, names=list(axes), units=["1", "1"], exponent_unit="1/tau"
+)
+
+# %% [markdown]
+# Over the frequency of the drive and its force:
+
+# %%
+axes = {"Omega": np.linspace(0.1, 0.6, 8 if tiny else 200), "inverse_alpha": np.linspace(1.0, 5.0, 4 if tiny else 80)}
+plane = dynamics.paper_map(1, axes, periods=periods, skip=skip)
+figures.exponent_and_period_map(
+    plane.Omega, plane.inverse_alpha, plane.lyapunov, plane.period, names=list(axes), units=["1", "1"], exponent_unit="1/tau"
+)
+
+# %% [markdown]
+# ## Your own joint
+#
+# The same for a joint in SI units, over any of its parameters and those of the drive. With `store=` the tiles go to a folder and
+# a run that is stopped goes on there; with `client=` they are computed by a dask cluster.
+
+# %%
+joint = jb.base_motion_joint(inertia=3.16, backlash=0.026, stiffness=11000.0, damping=20.0)
+family = dynamics.NamedParameters(joint, Harmonic(0.05, 2.0 * np.pi * 1.54))
+axes = {
+    "drive.amplitude": np.radians(np.linspace(1.0, 6.0, 6 if tiny else 60)),
+    "drive.frequency": np.linspace(1.0, 3.0, 4 if tiny else 40),
+}
+own = dynamics.run_map(dynamics.request(family, axes, periods=periods, skip=skip))
+print(own.lyapunov.dims, own.lyapunov.attrs["units"], own.attrs["solver"])
+figures.exponent_and_period_map(
+    np.degrees(own["drive.amplitude"]), own["drive.frequency"], own.lyapunov, own.period,
+    names=["amplitude of the base", "frequency"], units=["deg", "Hz"], exponent_unit=own.lyapunov.attrs["units"],
+)
