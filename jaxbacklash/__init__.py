@@ -48,8 +48,10 @@ from .models import two_link as two_link
 from .parameters import param as param
 from .precision import enable_double_precision as enable_double_precision
 from .program import start as start
+from .records import MeasuredSeries as MeasuredSeries
 from .records import Record as Record
 from .records import read_record as read_record
+from .records import read_series as read_series
 from .records import write_record as write_record
 from .sensors import SensorDelay as SensorDelay
 from .sensors import SensorGain as SensorGain
@@ -61,5 +63,7 @@ from .skeleton import Skeletons as Skeletons
 from .skeleton import frequency_response as frequency_response
 from .skeleton import skeleton as skeleton
 from .system import System as System
+from .timeseries import ChaosReport as ChaosReport
+from .timeseries import chaos as chaos
 
 __version__ = "0.1.0"

@@ -187,6 +187,32 @@ def skeleton(
     )  # fmt: skip
 
 
+@app.command(epilog="Example: jaxbacklash chaos run1.csv --channel z --out chaos1")
+def chaos(
+    record: Annotated[Path, typer.Argument(help="A table with even times and the channel to judge: CSV, npz or mat")],
+    channel: Annotated[str | None, typer.Option("--channel", help="The channel or column to judge; default z, else y")] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for result.json and report.html")] = None,
+    json: Json = False,
+    columns: Columns = None,
+    unit: Unit = None,
+    scale: Scale = None,
+    resample: Resample = False,
+    resample_rate: ResampleRate = None,
+    rate: Annotated[float | None, typer.Option("--rate", help="Samples per second of a file without a time column [Hz]")] = None,
+    surrogates: Annotated[str, typer.Option("--surrogates", help="Kind of surrogates: iaaft, aaft or fourier")] = "iaaft",
+    count: Annotated[int, typer.Option("--surrogate-count", help="How many surrogates; 39 reach p = 0.025")] = 39,
+    clean: Annotated[bool, typer.Option("--clean/--no-clean", help="Take noise off as well, for dimension and exponent")] = True,
+    seed: Seed = 0,
+) -> None:
+    """Is a measured series chaotic, how much, and why does it look so? Verdict, exponent with interval, pictures."""
+    from .commands import chaos as command
+
+    command.run(
+        record, channel=channel, out=out, as_json=json, columns=columns, unit=unit, scale=scale,
+        resample=resample_rate or resample, rate=rate, surrogates=surrogates, count=count, clean=clean, seed=seed,
+    )  # fmt: skip
+
+
 @app.command(
     epilog="Example: jaxbacklash simulate fit1/model.toml --excitation chirp:amplitude=0.07,f0=0,f1=12 --out sim.csv"
 )

@@ -1,5 +1,7 @@
 """Records: what was measured, read from a file and refused at birth when it cannot be used."""
 
+from .measured_series import MeasuredSeries as MeasuredSeries
+from .measured_series import read_series as read_series
 from .reader import read_record as read_record
 from .record import Record as Record
 from .units import parse_columns as parse_columns

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import PurePosixPath
 from typing import Any
 
+from .chaos_tiles import chaos_tiles, chosen
 from .facts import (
     BASE,
     LABELS,
@@ -22,6 +23,7 @@ from .facts import (
 from .figures_model import stage_name
 from .style import format_evidence, format_interval, is_number, short, with_unit
 
+SETTLED = ("complete", "chaotic", "regular", "stochastic")  # verdicts that leave nothing open
 MARKS = {"found": "✓", "one-sided": "◐", "given": "·"}  # a sign beside each word, for those who see no colour
 
 
@@ -36,10 +38,13 @@ def summarise(result: Entry) -> dict[str, Any]:
         "command": str(result.get("command") or ""),
         "name": PurePosixPath(path.replace("\\", "/")).name or path,
         "verdict": str(result.get("verdict") or ""),
+        "settled": result.get("verdict") in SETTLED,
         # The page says the verdict's word itself, so a sentence need not begin with it.
         "verdict_text": str(result.get("verdict_text") or "").removeprefix("Incomplete: ").removeprefix("Complete: "),
         "findings": [str(sentence) for sentence in result.get("findings") or []],
-        "tiles": _tiles([best_method(result)] if result.get("command") == "skeleton" else stages),
+        "tiles": chaos_tiles(result)
+        if "lyapunov" in result
+        else _tiles([best_method(result)] if result.get("command") == "skeleton" else stages),
         "skeletons": skeleton_tables(result),
         "parameters": parameter_rows(stages),
         "stages": stage_rows(stages) if len(stages) > 1 else [],
@@ -49,7 +54,7 @@ def summarise(result: Entry) -> dict[str, Any]:
         "alternatives": [" + ".join(map(str, names)) for names in result.get("alternatives") or [] if names],
         "alternatives_text": str(result.get("alternatives_text") or ""),
         "cross_check": cross_check_table(result.get("cross_check"), stages[-1] if stages else {}),
-        "facts": list(facts(result, record, path, stages or [best_method(result)])),
+        "facts": [*facts(result, record, path, stages or [best_method(result)]), *chosen(result)],
         "per_inertia": bool(result.get("per_inertia")),
         "command_line": str(result.get("command_line") or ""),
         "version": str(result.get("version") or ""),

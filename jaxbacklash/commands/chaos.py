@@ -1,0 +1,60 @@
+"""``jaxbacklash chaos``."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from pathlib import Path
+
+from .. import __version__
+from ..errors import BadInput
+from ..records import parse_columns, parse_scales, parse_units, read_series
+from ..report.chaos_report import chaos_report
+from ..report.chaos_result import chaos_json
+from ..timeseries import chaos
+from .common import json_text, out_folder, progress, write_text
+
+
+def run(
+    path: Path,
+    *,
+    channel: str | None,
+    out: Path | None,
+    as_json: bool,
+    columns: list[str] | None,
+    unit: list[str] | None,
+    scale: list[str] | None,
+    resample: float | bool,
+    rate: float | None,
+    surrogates: str,
+    count: int,
+    clean: bool,
+    seed: int,
+) -> None:
+    """Read one channel, judge it, print; write the result and the report when a folder is given."""
+    source = read_series(
+        path, channel, columns=parse_columns(columns) if columns else None, units=parse_units(unit) if unit else None,
+        scales=parse_scales(scale) if scale else None, resample=resample or None, rate=rate,
+    )  # fmt: skip
+    folder = out_folder(out)
+    with progress(as_json) as tell:
+        try:
+            found = chaos(
+                source.values, source.dt, drive=source.drive, surrogates=surrogates, count=count, clean=clean, seed=seed,
+                progress=tell,
+            )  # fmt: skip
+        except BadInput as why:
+            raise BadInput(f"{path}, channel {source.name}: {why}") from None
+        result = chaos_json(found, source, command_line=shlex.join(["jaxbacklash", *sys.argv[1:]]), version=__version__)
+        text = json_text(result)
+        if folder is not None:
+            tell("drawing the report", 0.97)
+            write_text(folder / "result.json", text)
+            chaos_report(found, source, result, folder / "report.html")
+    if as_json:
+        sys.stdout.write(text)
+        return
+    print(source.summary())
+    print(found)
+    if folder is not None:
+        print(f"written: {folder}/result.json, report.html")

@@ -1,0 +1,78 @@
+"""The page of a chaos analysis: which pictures, in which order, with which sentence."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ..records import MeasuredSeries
+from ..timeseries import ChaosReport
+from .drawing import to_svg
+from .figures_chaos import (
+    chaos_series,
+    correlation_sums,
+    delay_choice,
+    dimension_choice,
+    phase_plot,
+    stretching_curves,
+    surrogates_and_walk,
+)
+from .html import Panel, write_report
+
+
+def chaos_report(found: ChaosReport, source: MeasuredSeries, result: dict[str, Any], path: Path) -> None:
+    """Write the page."""
+    write_report(path, result, chaos_panels(found, source))
+
+
+def chaos_panels(found: ChaosReport, source: MeasuredSeries) -> list[Panel]:
+    """The pictures of a chaos report with a sentence each."""
+    return [
+        Panel("The series", "The grey stretch above is what is drawn below.",
+              to_svg(chaos_series(found, source.name, source.unit)), "series"),
+        Panel("The state, one delay apart",
+              "A thin, folded sheet is a sign of few degrees of freedom; a cloud is a sign of noise.",
+              to_svg(phase_plot(found, source.unit)), "phase"),
+        Panel("How neighbours part", _parting(found), to_svg(stretching_curves(found)), "stretching",
+              "The mean logarithm of the distance between states that were near. Exponential growth is a straight "
+              "line. It begins where noise no longer hides it and ends where neighbours are as far apart as any two states. The "
+              "exponent itself comes from maps fitted to neighbourhoods, whose product does not saturate."),
+        Panel("Surrogates and 0-1 test", _surrogates(found), to_svg(surrogates_and_walk(found)), "surrogates",
+              "Surrogates have the values and the spectrum of the series and are otherwise random. If the series is no better "
+              "predicted than they are, linear noise explains it. In the 0-1 test a walk driven by the series wanders for chaos "
+              "and noise, and circles for regular motion."),
+        Panel("Delay", f"The delay taken is {found.delay.samples} samples: {found.delay.why}.",
+              to_svg(delay_choice(found)), "delay"),
+        Panel("Embedding dimension", _dimension(found), to_svg(dimension_choice(found)), "dimension"),
+        Panel("Correlation dimension", _correlation(found), to_svg(correlation_sums(found)), "correlation"),
+    ]  # fmt: skip
+
+
+def _parting(found: ChaosReport) -> str:
+    if found.lyapunov is None:
+        return f"No exponent is given: {found.why_no_number}."
+    if found.curve.region is None:
+        return "The curves are too short for a straight part of their own; the dotted line is the growth the local maps give."
+    return "The thick line is the straight part that was chosen; the dotted one is the growth the local maps give."
+
+
+def _surrogates(found: ChaosReport) -> str:
+    p = found.surrogates.p_value
+    if p <= 0.05:
+        return f"The series predicts itself better than all but a few surrogates do (p = {p:.3g})."
+    return f"Linear noise is predicted as well as the series (p = {p:.3g})."
+
+
+def _dimension(found: ChaosReport) -> str:
+    raw, cleaned = found.raw_dimension.cao, found.cleaned_dimension
+    words = "E1 does not settle" if raw is None else f"E1 settles at {raw} coordinates"
+    if cleaned is not None and cleaned.cao is not None:
+        words += f", and at {cleaned.cao} once noise is taken off"
+    return words + "; rings mark where. E2 near 1 everywhere would be noise."
+
+
+def _correlation(found: ChaosReport) -> str:
+    one = found.correlation
+    if one.dimension is None:
+        return f"No dimension is given: {one.why}."
+    return f"Straight parts of the sums agree on a correlation dimension of {one.dimension:.2f}."

@@ -1,0 +1,138 @@
+"""What a series says about chaos, as the machine-readable result of INTERFACE."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..records import MeasuredSeries
+from ..timeseries import ChaosReport
+from .result import SCHEMA, finite
+
+
+def chaos_json(found: ChaosReport, source: MeasuredSeries, *, command_line: str = "", version: str = "") -> dict[str, Any]:
+    """The whole result of ``chaos``; what could not be found is null with a "why" beside it."""
+    dt = found.dt
+    return {
+        "schema": SCHEMA,
+        "command": "chaos",
+        "command_line": command_line,
+        "version": version,
+        "record": {
+            "path": source.path, "samples": int(source.t.size), "rate_hz": 1.0 / dt, "duration_s": source.t.size * dt,
+            "channels": ["t", *([source.drive_name] if source.drive_name else []), source.name], "channel": source.name,
+        },
+        "delay_samples": found.delay.samples,
+        "delay_s": found.delay.samples * dt,
+        "delay_why": found.delay.why,
+        "mean_period_s": found.period * dt,
+        "theiler_samples": found.theiler,
+        "dimension": _dimension(found),
+        "noise_reduction": _noise_reduction(found),
+        "correlation_dimension": _with_why(
+            found.correlation.dimension, found.correlation.why, spread=finite(found.correlation.spread)
+        ),
+        "lyapunov": _lyapunov(found),
+        "stretching": _stretching(found),
+        "prediction_error": None if found.raw_exponent is None else finite(found.raw_exponent.error),
+        "surrogates": {
+            "kind": found.surrogates.kind, "count": found.surrogates.count, "p_value": found.surrogates.p_value,
+            "statistic": "rms error of predictions one delay ahead, in standard deviations",
+            "value": finite(found.surrogates.statistic), "of_surrogates": [finite(v) for v in found.surrogates.surrogates],
+        },
+        "zero_one": {"k": finite(found.walk.k), "samples": found.walk.samples, "stride": found.walk.stride},
+        "seed": found.seed,
+        "verdict": found.verdict.word,
+        "verdict_text": found.verdict.text,
+        "choices": [{"what": what, "text": text} for what, text in choices(found)],
+    }  # fmt: skip
+
+
+def choices(found: ChaosReport) -> list[tuple[str, str]]:
+    """What was chosen, and why, for the table of a page."""
+    dt, raw = found.dt, found.raw_dimension
+    rows = [
+        ("delay", f"{found.delay.samples} samples, {found.delay.samples * dt:.4g} s: {found.delay.why}"),
+        ("Theiler window", f"{found.theiler} samples: a swing takes {found.period:.4g}"),
+        ("embedding dimension", f"{_words(raw.cao)} by Cao's E1, {_words(raw.false_neighbours)} by false nearest neighbours"),
+    ]
+    if found.raw_exponent is not None:
+        maps = ", ".join(f"{one.dimension} with {one.neighbours}" for one in (found.exponent or found.raw_exponent).maps)
+        rows.append(("local maps", f"those that predict best out of sample; coordinates with neighbours: {maps}"))
+    if found.cleaned is not None:
+        used = "the exponent is from the cleaned series" if found.uses_cleaned else "the exponent is from the series as measured"
+        gain = "cannot be told" if found.cleaned.gain_db is None else f"is about {found.cleaned.gain_db:.1f} dB"
+        size = f"{100 * found.cleaned.noise:.2g} % of the signal's spread"
+        rows.append(("noise reduction", f"noise of {size}; the gain of taking it off {gain}; {used}"))
+    p = found.surrogates
+    how = f"{p.count} of kind {p.kind.upper()} over {p.samples} samples with matched ends, seed {found.seed}"
+    rows.append(("surrogates", how))
+    return rows
+
+
+def _words(value: int | None) -> str:
+    return "none found" if value is None else str(value)
+
+
+def _with_why(value: Any, why: str | None, **more: Any) -> dict[str, Any]:
+    entry = {"value": value if isinstance(value, int) else finite(value), **more}
+    return entry if entry["value"] is not None else {**entry, "why": why or "it could not be found"}
+
+
+def _dimension(found: ChaosReport) -> dict[str, Any]:
+    raw, cleaned = found.raw_dimension, found.cleaned_dimension
+    entry: dict[str, Any] = {
+        "raw": raw.cao,
+        "cleaned": None if cleaned is None else cleaned.cao,
+        "rule": "Cao's E1",
+        "false_neighbours": {
+            "raw": raw.false_neighbours, "cleaned": None if cleaned is None else cleaned.false_neighbours,
+        },
+    }  # fmt: skip
+    if raw.cao is None or entry["cleaned"] is None:
+        missing = "no noise was taken off" if cleaned is None and raw.cao is not None else "E1 does not settle"
+        entry["why"] = missing
+    return entry
+
+
+def _noise_reduction(found: ChaosReport) -> dict[str, Any]:
+    if found.cleaned is None:
+        return {"method": None, "why": "it was not asked for", "used": False}
+    cleaned = found.cleaned
+    return {
+        "method": cleaned.method, "window": cleaned.window, "delay_samples": cleaned.delay, "directions_kept": cleaned.kept,
+        "noise": finite(cleaned.noise * found.deviation), "noise_share": finite(cleaned.noise),
+        "gain_db": finite(cleaned.gain_db),
+        "removed_rms": finite(cleaned.removed * found.deviation), "samples": int(cleaned.series.size), "used": found.uses_cleaned,
+    }  # fmt: skip
+
+
+def _lyapunov(found: ChaosReport) -> dict[str, Any]:
+    value, interval = found.lyapunov, found.interval
+    entry: dict[str, Any] = {
+        "value": finite(value),
+        "ci95": None if interval is None else [finite(end) for end in interval],
+        "unit": "1/s",
+        "per_period": None,
+        "bit_per_s": None if value is None else value / math.log(2.0),
+        "method": "local maps (Sano and Sawada, 1985)",
+    }
+    if value is None:
+        return entry | {"why": found.why_no_number}
+    if found.drive_period is None:
+        return entry | {"per_period_why": found.why_no_period}
+    return entry | {"per_period": value * found.drive_period, "drive_period_s": found.drive_period}
+
+
+def _stretching(found: ChaosReport) -> dict[str, Any]:
+    curve, dt = found.curve, found.dt
+    if curve.region is None or curve.slope is None or curve.interval is None:
+        return {"value": None, "why": "no straight part rises by a factor of two below saturation", "unit": "1/s"}
+    ends = curve.lags[[curve.region.first, curve.region.last]] * dt
+    return {
+        "value": curve.slope / dt, "ci95": [end / dt for end in curve.interval], "unit": "1/s",
+        "rosenstein": finite(None if curve.rosenstein_slope is None else curve.rosenstein_slope / dt),
+        "region_s": [float(end) for end in ends], "rise": float(np.ptp(curve.smooth[curve.region.first : curve.region.last + 1])),
+    }  # fmt: skip

@@ -1,0 +1,216 @@
+"""From a measured series to a verdict: is it chaos, and how much?"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput
+from .correlation import Correlation, correlation
+from .dimension import Dimension, embedding_dimension
+from .exponent import Exponent, largest_exponent
+from .mutual_information import Delay, choose_delay
+from .noise_reduction import Cleaned, projective, simple
+from .print_report import text
+from .scales import mean_period
+from .stationarity import kept_company
+from .stretching import Stretching, stretching
+from .surrogates import KINDS, SurrogateTest, surrogate_test
+from .verdict import Verdict, judge
+from .zero_one import ZeroOne, zero_one
+
+SHORTEST = 500
+CLEANED_SAMPLES = 20000  # of a longer series the middle is cleaned
+WORTH_IT_DB = 1.0
+FINE = 8.0  # samples a swing from which on a series counts as a flow's
+SWING_SHARE = 0.35  # of a swing that the noise reduction's vectors span
+
+Tell = Callable[[str, float], None]
+
+
+@dataclass(frozen=True, eq=False)
+class ChaosReport:
+    """What one series says. Prints itself.
+
+    Exponents are per sample inside ``exponent`` and ``raw_exponent``; the properties give them per second. ``series`` is the
+    standardised series, ``cleaned`` its noise reduction (of the middle `CLEANED_SAMPLES` of a long series), which counts only
+    where ``uses_cleaned``. ``drive_period`` [s] is None, with ``why_no_period``, for a record without a drive.
+    """
+
+    series: np.ndarray
+    dt: float
+    mean: float
+    deviation: float
+    period: float
+    delay: Delay
+    theiler: int
+    raw_dimension: Dimension
+    cleaned_dimension: Dimension | None
+    cleaned: Cleaned | None
+    simple: Cleaned | None
+    uses_cleaned: bool
+    raw_exponent: Exponent | None
+    exponent: Exponent | None
+    curve: Stretching
+    correlation: Correlation
+    raw_correlation: Correlation
+    surrogates: SurrogateTest
+    walk: ZeroOne
+    verdict: Verdict
+    why_no_number: str | None
+    drive_period: float | None
+    why_no_period: str | None
+    seed: int
+
+    @property
+    def lyapunov(self) -> float | None:
+        """Largest exponent [1/s], None where there is none to give (see ``why_no_number``)."""
+        return None if self.why_no_number or self.exponent is None else self.exponent.value / self.dt
+
+    @property
+    def interval(self) -> tuple[float, float] | None:
+        """95 % interval of the largest exponent [1/s]."""
+        if self.lyapunov is None or self.exponent is None:
+            return None
+        return self.exponent.interval[0] / self.dt, self.exponent.interval[1] / self.dt
+
+    def __str__(self) -> str:
+        return text(self)
+
+
+def chaos(
+    series: np.ndarray, dt: float = 1.0, *, drive: np.ndarray | None = None, surrogates: str = "iaaft", count: int = 39,
+    clean: bool = True, seed: int = 0, progress: Tell | None = None,
+) -> ChaosReport:  # fmt: skip
+    """Is a measured series chaotic, and how fast do small differences grow?
+
+    Parameters
+    ----------
+    series : (N,) evenly sampled, at least 500 samples, any unit
+    dt : time between samples [s]
+    drive : (N,) what drives the system, if that was measured; its period then gives the exponent per period
+    surrogates : "iaaft", "aaft" or "fourier"
+    count : how many; with 39 the least p-value is 0.025
+    clean : take noise off too, for the dimension and a less biased exponent; the verdict never rests on it alone
+    seed : of everything random: surrogates, reference points
+    progress : told (stage, share done)
+
+    Returns
+    -------
+    ChaosReport
+
+    Raises
+    ------
+    BadInput
+        The series is too short, constant, or not finite.
+    """
+    series, dt = _checked(series, dt, count, surrogates)
+    tell = progress or (lambda stage, share: None)
+    rng = np.random.default_rng(seed)
+    mean, deviation = float(series.mean()), float(series.std())
+    series = (series - mean) / deviation
+
+    tell("choosing the delay", 0.02)
+    period = mean_period(series)
+    delay = choose_delay(series, rng)
+    theiler = int(np.clip(max(np.ceil(period), 3 * delay.samples), 3, series.size // 20))
+    tell("choosing the dimension", 0.08)
+    raw_dimension = embedding_dimension(series, delay.samples, theiler, rng)
+
+    tell("fitting local maps", 0.15)
+    raw_exponent = largest_exponent(series, delay.samples, theiler, rng)
+    m = min(max(raw_dimension.cao or 4, 2), 6)
+    tell("surrogates", 0.30)
+    tested = surrogate_test(series, m, delay.samples, theiler, rng, kind=surrogates, count=count)
+    tell("following neighbours", 0.50)
+    walk = zero_one(series, max(1, delay.samples), rng)
+    raw_curve = stretching(series, m, delay.samples, theiler, period, rng)
+    company = kept_company(series, m, delay.samples, theiler, rng)
+    verdict = judge(raw_exponent, tested, raw_curve, walk, series.size, period, company)
+
+    cleaned = by_average = cleaned_dimension = None
+    working, exponent, curve = series, raw_exponent, raw_curve
+    uses_cleaned = False
+    if clean:
+        tell("taking noise off", 0.60)
+        cleaned, by_average = clean_series(series, period)
+        uses_cleaned = cleaned.gain_db is not None and cleaned.gain_db >= WORTH_IT_DB
+        tell("choosing the dimension", 0.80)
+        cleaned_dimension = embedding_dimension(cleaned.series, delay.samples, theiler, rng)
+        if uses_cleaned and verdict.word in ("chaotic", "undecided"):
+            working = (cleaned.series - cleaned.series.mean()) / cleaned.series.std()
+            tell("fitting local maps", 0.84)
+            exponent = largest_exponent(working, delay.samples, theiler, rng) or raw_exponent
+            curve = stretching(working, m, delay.samples, theiler, period, rng)
+    tell("correlation sums", 0.92)
+    highest = range(2, min(m + 3, 8) + 1)
+    raw_correlation = correlation(series, highest, delay.samples, theiler, rng)
+    found = correlation(working, highest, delay.samples, theiler, rng) if uses_cleaned else raw_correlation
+    drive_period, why = _drive_period(drive, series.size, dt)
+    return ChaosReport(
+        series, dt, mean, deviation, period, delay, theiler, raw_dimension, cleaned_dimension, cleaned, by_average, uses_cleaned,
+        raw_exponent, exponent, curve, found, raw_correlation, tested, walk, verdict, _why_none(verdict, exponent, curve),
+        drive_period, why, seed,
+    )  # fmt: skip
+
+
+def _checked(series: np.ndarray, dt: float, count: int, surrogates: str) -> tuple[np.ndarray, float]:
+    series = np.asarray(series, dtype=float)
+    if series.ndim != 1:
+        raise BadInput(f"the series: found an array of shape {series.shape}, wanted one value per sample")
+    if series.size < SHORTEST:
+        raise BadInput(f"the series: found {series.size} samples, wanted at least {SHORTEST} to tell chaos from anything")
+    if not np.all(np.isfinite(series)):
+        raise BadInput(f"the series: found {series[~np.isfinite(series)][0]}, wanted a finite number in every row")
+    if not series.std() > 1e-12 * np.abs(series).max():
+        raise BadInput("the series: found a constant, wanted a motion")
+    if not (np.isfinite(dt) and dt > 0.0):
+        raise BadInput(f"the time between samples: found {dt}, wanted a positive number of seconds")
+    if surrogates not in KINDS:
+        raise BadInput(f"surrogates: found {surrogates!r}, wanted one of {', '.join(KINDS)}")
+    if count < 19:
+        raise BadInput(f"surrogates: found a count of {count}, wanted at least 19, or no p-value can reach 0.05")
+    return series, float(dt)
+
+
+def clean_series(series: np.ndarray, period: float) -> tuple[Cleaned, Cleaned]:
+    """The projective noise reduction and the simple one of the source paper; of a long series, of its middle.
+
+    Vectors span 35 % of a swing for a flow, six samples for a map.
+    """
+    if series.size > CLEANED_SAMPLES:
+        begin = (series.size - CLEANED_SAMPLES) // 2
+        series = series[begin : begin + CLEANED_SAMPLES]
+    window, delay = (15, max(1, round(SWING_SHARE * period / 14))) if period > FINE else (6, 1)
+    return projective(series, window=window, delay=delay), simple(series, window=window, delay=delay)
+
+
+def _drive_period(drive: np.ndarray | None, samples: int, dt: float) -> tuple[float | None, str | None]:
+    """Period of a drive that repeats [s]: the one line that carries nearly all its power."""
+    if drive is None:
+        return None, "the record has no drive"
+    drive = np.asarray(drive, dtype=float) - np.mean(drive)
+    if drive.size != samples or not drive.std() > 0.0:
+        return None, "the drive does not move"
+    power = np.abs(np.fft.rfft(drive * np.hanning(samples))) ** 2
+    top = int(np.argmax(power))
+    near = power[max(top - 3, 0) : top + 4]
+    if top < 4 or near.sum() < 0.8 * power.sum():
+        return None, "the drive is not periodic: no single line carries its power"
+    middle = float(np.sum(np.arange(max(top - 3, 0), max(top - 3, 0) + near.size) * near) / near.sum())
+    return samples * dt / middle, None
+
+
+def _why_none(verdict: Verdict, exponent: Exponent | None, curve: Stretching) -> str | None:
+    """Why no exponent is given; None where one is."""
+    if exponent is None:
+        return "the series is too short"
+    if verdict.word == "stochastic":
+        return "the motion is not deterministic enough to have an exponent"
+    if verdict.word == "chaotic":
+        if exponent.interval[0] <= 0.0:
+            return "with the noise taken off the interval reaches zero"
+        return None
+    return "small differences show no stretch of exponential growth"

@@ -1,0 +1,66 @@
+"""A chaos report as a person reads it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .analyse import ChaosReport
+
+
+def text(found: ChaosReport) -> str:
+    """Verdict first, then the exponent, then what was chosen and why."""
+    dt, raw = found.dt, found.raw_dimension
+    lines = [f"{found.verdict.word}: {found.verdict.text}", ""]
+    lines.append(_exponent(found))
+    if found.lyapunov is not None and found.curve.slope is not None:
+        low, high = found.curve.interval or (math.nan, math.nan)
+        lines.append(
+            f"  from stretching curves alone    {found.curve.slope / dt:.4g} 1/s, {low / dt:.4g} to {high / dt:.4g}"
+            f" (Kantz), {(found.curve.rosenstein_slope or 0.0) / dt:.4g} (Rosenstein)"
+        )
+    elif found.lyapunov is not None:
+        lines.append("  from stretching curves alone    none: their straight part is shorter than a factor of two")
+    p = found.surrogates
+    lines += [
+        f"  prediction error one delay ahead {found.raw_exponent.error:.3g} of the signal" if found.raw_exponent else "",
+        f"  surrogates                      {p.count} {p.kind.upper()}, prediction error {p.statistic:.3g} against "
+        f"{p.surrogates.mean():.3g}, p = {p.p_value:.3g}",
+        f"  0-1 test                        K = {found.walk.k:.2f} from {found.walk.samples} samples, {found.walk.stride} apart",
+        "",
+        f"  delay                           {found.delay.samples} samples, {found.delay.samples * dt:.4g} s: {found.delay.why}",
+        f"  mean period of a swing          {found.period:.4g} samples; neighbours within {found.theiler} samples are left out",
+        f"  embedding dimension             {_or_none(raw.cao)} by Cao's E1, {_or_none(raw.false_neighbours)} by false "
+        "neighbours",
+    ]
+    if found.cleaned is not None and found.cleaned_dimension is not None:
+        gain = "unknown" if found.cleaned.gain_db is None else f"{found.cleaned.gain_db:.1f} dB"
+        use = "used for the exponent" if found.uses_cleaned else "not used: it would gain too little"
+        lines += [
+            f"  after noise reduction           {_or_none(found.cleaned_dimension.cao)} by Cao's E1, "
+            f"{_or_none(found.cleaned_dimension.false_neighbours)} by false neighbours",
+            f"  noise                           {100 * found.cleaned.noise:.2g} % of the signal; taken off: gain about {gain}, "
+            f"{use}",
+        ]
+    d = found.correlation
+    shown = f"{d.dimension:.2f} +- {d.spread:.2f}" if d.dimension is not None else f"none: {d.why}"
+    lines.append(f"  correlation dimension           {shown}")
+    return "\n".join(lines)
+
+
+def _exponent(found: ChaosReport) -> str:
+    value, interval = found.lyapunov, found.interval
+    if value is None or interval is None:
+        return f"  largest Lyapunov exponent       none: {found.why_no_number}"
+    per = ""
+    if found.drive_period is not None:
+        per = f", {value * found.drive_period:.4g} per drive period"
+    return (
+        f"  largest Lyapunov exponent       {value:.4g} 1/s, 95 % interval {interval[0]:.4g} to {interval[1]:.4g}, "
+        f"{value / math.log(2.0):.4g} bit/s{per}"
+    )
+
+
+def _or_none(value: int | None) -> str:
+    return "none found" if value is None else str(value)

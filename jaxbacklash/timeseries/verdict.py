@@ -1,0 +1,90 @@
+"""Chaotic, regular, stochastic, or undecided: what the witnesses say together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .exponent import Exponent
+from .stretching import Stretching
+from .surrogates import SurrogateTest
+from .zero_one import ZeroOne
+
+SIGNIFICANT = 0.05
+STEADY = 0.3  # share of neighbours from the same tenth of the record; 0.1 is a steady motion
+GROWS = 10.0  # a difference must grow by e to this over the record, or its growth cannot be told from none
+STAYS = 0.5  # K below which the 0-1 test says regular
+REGULAR_DRIFT = 0.05  # exponents below this per swing are none
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """``word``: "chaotic", "regular", "stochastic" or "undecided"; ``text``: why, in a sentence or two."""
+
+    word: str
+    text: str
+
+
+def judge(
+    exponent: Exponent | None, surrogates: SurrogateTest, curve: Stretching, walk: ZeroOne, samples: int, period: float,
+    company: float,
+) -> Verdict:  # fmt: skip
+    """Weigh the witnesses.
+
+    Chaotic needs all of: the series predicts itself, and better than its surrogates do (p at most 0.05); the exponent's whole
+    interval lies above zero, so far that a difference grows by e^10 over the record; the 0-1 test does not say regular;
+    and the motion is steady, with nearest states from all over the record. Regular: no exponent above zero, and neighbours
+    stay neighbours or the 0-1 test says regular. Stochastic: not predictable, or no more so than linear noise is. Anything
+    else is undecided.
+
+    Parameters
+    ----------
+    exponent : of the raw series, per sample
+    surrogates, curve, walk : the other witnesses
+    samples : of the series
+    period : samples of a swing
+    company : share of nearest neighbours from the same tenth of the record, see `stationarity.kept_company`
+    """
+    if exponent is None:
+        return Verdict("undecided", "The series is too short for a local map of its motion.")
+    low, high = exponent.interval
+    nonlinear = surrogates.p_value <= SIGNIFICANT
+    told = f"p = {surrogates.p_value:.3g} against {surrogates.count} {surrogates.kind.upper()} surrogates"
+    grows = low > 0.0 and low * samples > GROWS
+    flat = exponent.value * period < REGULAR_DRIFT or low <= 0.0
+    if exponent.predicts and nonlinear and grows:
+        if company > STEADY:
+            return Verdict(
+                "undecided",
+                f"The motion changes its nature over the record: {100 * company:.0f} % of nearest states come from the same "
+                "tenth of it, as in a sweep. Take a stretch over which the drive is steady.",
+            )
+        if walk.k < STAYS:
+            return Verdict(
+                "undecided",
+                f"Small differences seem to grow, but the 0-1 test finds regular motion (K = {walk.k:.2f}); a longer record may "
+                "tell.",
+            )
+        return Verdict(
+            "chaotic",
+            f"The series predicts itself better than linear noise would ({told}), and small differences grow exponentially: the "
+            f"whole interval of the largest exponent lies above zero.",
+        )
+    if exponent.predicts and flat and (curve.stays_near or walk.k < STAYS):
+        seen = f"the 0-1 test finds no wandering (K = {walk.k:.2f})"
+        seen = "neighbouring states stay neighbours" if curve.stays_near else seen
+        return Verdict("regular", f"Small differences do not grow: {seen}, and the largest exponent is not above zero.")
+    if not exponent.predicts:
+        return Verdict(
+            "stochastic",
+            f"Near states have unlike futures: the best prediction one delay ahead misses by {exponent.error:.2f} of the "
+            "signal's own spread.",
+        )
+    if not nonlinear:
+        return Verdict("stochastic", f"Linear noise seen through a static curve explains the series ({told}).")
+    if high <= 0.0 or flat:
+        return Verdict(
+            "undecided",
+            f"There is nonlinear structure ({told}) but no growth of small differences; a regular motion shaken by noise would "
+            "look like this.",
+        )
+    return Verdict("undecided", "Small differences may grow, but too little for this record to tell; a longer one may.")
