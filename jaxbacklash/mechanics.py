@@ -80,7 +80,8 @@ class AbstractEffect(eqx.Module):
     base, so it is part of the transmitted torque) or ``"ground"``; ``family`` a name shared by laws that data often
     cannot tell apart; ``catalogued`` False keeps a law out of the search for missing effects; ``slides`` True for dry
     friction, whose torque is ``dry`` against the direction of sliding at its port; ``absorbs`` names of simpler laws that this
-    one contains, so that it takes their place instead of standing beside them (parameters of one name are then the same).
+    one contains, so that it takes their place instead of standing beside them (parameters of one name are then the same);
+    ``yields`` parameters that the presence of another effect makes superfluous, and that effect's name: held beside it.
     """
 
     states: ClassVar[tuple[str, ...]] = ()
@@ -89,6 +90,7 @@ class AbstractEffect(eqx.Module):
     catalogued: ClassVar[bool] = True
     slides: ClassVar[bool] = False
     absorbs: ClassVar[tuple[str, ...]] = ()
+    yields: ClassVar[dict[str, str]] = {}
 
     @classmethod
     def guesses(cls, system: Any) -> list[AbstractEffect]:

@@ -49,8 +49,14 @@ def prepare_for_maps() -> None:
         os.environ["XLA_FLAGS"] = f"{flags} --xla_backend_extra_options={FUSION}".strip()
 
 
-def start(*, cache: bool = True) -> None:
-    """Switch to double precision, ask for wide vectors and one device a core, and keep compiled programs for the next run."""
+def start(*, cache: bool = True, devices: int | None = None) -> None:
+    """Switch to double precision, ask for wide vectors and one device a core, and keep compiled programs for the next run.
+
+    Parameters
+    ----------
+    cache : keep compiled programs in `cache_folder`
+    devices : CPU devices that share a fit's windows; default one a core, at most `MOST_CORES`
+    """
     import jax
 
     # XLA reads its flags when the first computation starts.
@@ -59,7 +65,7 @@ def start(*, cache: bool = True) -> None:
     os.environ["XLA_FLAGS"] = " ".join([flags, *ours]).strip()
     enable_double_precision()
     with contextlib.suppress(RuntimeError):  # the program has computed already: it goes on with what it has
-        jax.config.update("jax_num_cpu_devices", min(cores(), MOST_CORES))
+        jax.config.update("jax_num_cpu_devices", devices or min(cores(), MOST_CORES))
     if not cache:
         return
     folder = cache_folder()

@@ -1,13 +1,15 @@
 """Every test runs in double precision; tests on shared records skip where those are absent."""
 
+import os
 from pathlib import Path
 
 import jax
 import pytest
 
-from jaxbacklash import enable_double_precision
+import jaxbacklash as jb
 
-enable_double_precision()
+# Where several workers share the machine, each keeps to one core.
+jb.start(devices=1 if "PYTEST_XDIST_WORKER" in os.environ else None)
 jax.config.update("jax_platforms", "cpu")
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"

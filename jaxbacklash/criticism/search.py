@@ -268,7 +268,9 @@ class Search:
             # Far from zero needs no trial; what is near is left out and fitted again.
             doubtful = [n for n in trial.names if n != spare and significance(trial, n) < CLEAR]
             losses = {n: gain(self.without(trial, n), trial) for n in doubtful}
-            needless = [n for n, loss in losses.items() if loss < demanded(self.bench)]
+            # A model with as many parameters is another one, not a simpler one.
+            simpler = {n for n in doubtful if len(self.without(trial, n).free) < len(trial.free)}
+            needless = [n for n, loss in losses.items() if loss < demanded(self.bench) and n in simpler]
             if not needless:
                 return trial, tuple(dropped)
             name = min(needless, key=lambda n: losses[n])

@@ -115,7 +115,7 @@ class Workbench:
         smoothed = tuple(port for port in ("joint", "ground") if port not in sliding)
         bare = System(joint.inertia, joint.contact, joint.damper, {}, joint.observed, smoothed)
         system = bare.with_effects(*quiet.values(), *effects.values())
-        free = (*self.base_free, *(n for n in free_names(system) if n.partition(".")[0] in effects), *extra)
+        free = (*self.base_free, *(n for n in free_names(system, effects) if n.partition(".")[0] in effects), *extra)
         return _pad(make_problem(system, self.windows, free)), free
 
     def fit(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import jax.numpy as jnp
 
 from ..mechanics import AbstractEffect, Instant, Play
@@ -27,7 +29,12 @@ class AsymmetricStiffness(AbstractEffect):
 
 
 class GapSpring(AbstractEffect):
-    r"""A spring inside and outside the play, :math:`T = -k_1 (z - z_0)` (the paper's CASE 2 has it with z0 = 0)."""
+    r"""A spring inside and outside the play, :math:`T = -k_1 (z - z_0)` (the paper's CASE 2 has it with z0 = 0).
+
+    A preload beside it does what :math:`z_0` does.
+    """
+
+    yields: ClassVar[dict[str, str]] = {"z0": "preload"}
 
     k1: Scalar = param(unit="N m/rad", null=0.0, lower=0.0, scale=100.0)
     z0: Scalar = param(unit="rad", default=0.0, scale=1e-3)

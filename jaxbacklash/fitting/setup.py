@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
@@ -85,9 +85,13 @@ def _system(start: Start, record: Record, model: str) -> System:
     return System(start.inertia, contact, Damper(start.damping), observed=record.observed_name)
 
 
-def free_names(system: System) -> tuple[str, ...]:
-    """All parameters that a fit may change: everything but the inertia and numerical settings."""
-    return tuple(name for name, spec in specs(system).items() if not spec.fixed and name != "inertia")
+def free_names(system: System, beside: Iterable[str] | None = None) -> tuple[str, ...]:
+    """All parameters that a fit may change: everything but the inertia, numerical settings, and what an effect yields to
+    those of ``beside`` (default: all that the system has)."""
+    present = set(system.effects if beside is None else beside)
+    effects = system.effects.items()
+    held = {f"{name}.{own}" for name, effect in effects for own, other in effect.yields.items() if other in present}
+    return tuple(n for n, spec in specs(system).items() if not spec.fixed and n != "inertia" and n not in held)
 
 
 def add_effects(system: System, effects: Sequence[AbstractEffect | str]) -> System:
