@@ -18,6 +18,11 @@ def digits(t: np.ndarray, template: str) -> np.ndarray:
     return np.array([float(template % value) for value in t])
 
 
+def test_ten_minutes_at_five_kilohertz_are_even():
+    t = clock(3_000_000, 5000)
+    assert uniform_grid(t) is t
+
+
 @pytest.mark.parametrize(
     ("rounded", "rate"),
     [
