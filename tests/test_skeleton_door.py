@@ -70,7 +70,8 @@ def test_json_alone_on_stdout(call, sweep):
 @pytest.mark.slow
 def test_page_in_a_browser(call, sweep, tmp_path):
     call("skeleton", sweep.path, "--inertia", "3.16", "--out", tmp_path)
-    browse(tmp_path / "report.html")
+    dom = browse(tmp_path / "report.html", tmp_path / "profile", "--virtual-time-budget=5000", "--dump-dom")
+    assert dom.count("<svg") >= 5
 
 
 def test_a_multisine_is_told_and_drawn(tmp_path):
