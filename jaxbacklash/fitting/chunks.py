@@ -60,8 +60,12 @@ def by_chunks(work: Callable[[Any, Any], Any], shared: Any, lead: Any, used: Arr
         found = run(jnp.asarray(0, jnp.int32), arrays, jax.tree.map(lambda a: a[0], dealt), used)
         return jax.tree.map(lambda a: a.reshape(count, *a.shape[2:]), found)
 
+    shapes: Any = None
+
     def on_core(arrays: Any, own: Any, used: Array) -> Any:
+        nonlocal shapes
         found = run(jax.lax.axis_index("cores"), arrays, jax.tree.map(lambda a: a[0], own), used)
+        shapes = jax.tree.map(lambda f: jax.ShapeDtypeStruct(f.shape[1:], f.dtype), found)
         # One array, so that the cores wait for one another once.
         return jax.lax.all_gather(jax.vmap(lambda f: ravel_pytree(f)[0])(found), "cores", axis=1)
 
@@ -70,9 +74,10 @@ def by_chunks(work: Callable[[Any, Any], Any], shared: Any, lead: Any, used: Arr
     spread = jax.shard_map(
         on_core, mesh=mesh, in_specs=(everywhere, split, everywhere), out_specs=everywhere, check_vma=False
     )
-    first = jax.tree.map(lambda a: a[0, 0], dealt)
-    _, unravel = ravel_pytree(jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), jax.eval_shape(one, arrays, first)))
-    found = jax.vmap(jax.vmap(unravel))(spread(arrays, dealt, used))
+    gathered = spread(arrays, dealt, used)
+    # Tracing the call has told the shapes; asking for them beforehand would trace the work a second time.
+    _, unravel = ravel_pytree(jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), shapes))
+    found = jax.vmap(jax.vmap(unravel))(gathered)
     return jax.tree.map(lambda a: a.reshape(count, *a.shape[3:]), found)
 
 

@@ -44,7 +44,7 @@ def refinement_json(
     command_line, version : for the record
     """
     fit, stages = refinement.fit, refinement.stages
-    result = fit_json(fit, command="refine", command_line=command_line, version=version)
+    result = fit_json(fit, command="refine", command_line=command_line, version=version, checked=_checked(fit))
     result.pop("starts")  # the loop fits from one start, which its quick look has chosen
     followed = [*stages[1:], None]
     result["stages"] = [
@@ -61,7 +61,6 @@ def refinement_json(
     result["alternatives_text"] = alternatives_sentence(refinement)
     result["verdict"] = refinement.verdict.word
     result["verdict_text"] = refinement.verdict.text
-    result["cross_check"] = _checked(fit)
     result["seconds"] = {name: round(float(value), 4) for name, value in refinement.seconds.items()}
     if findings is not None:
         result |= findings.as_json()

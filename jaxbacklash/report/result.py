@@ -89,7 +89,9 @@ def _equation_error(fit: Fit, start: Start | None) -> dict[str, Any] | None:
     return found | {"agrees": bool(agrees), "tolerance": "3 % of play and stiffness"}
 
 
-def as_json(fit: Fit, *, command: str = "fit", command_line: str = "", version: str = "") -> dict[str, Any]:
+def as_json(
+    fit: Fit, *, command: str = "fit", command_line: str = "", version: str = "", checked: dict[str, Any] | None = None
+) -> dict[str, Any]:
     """The whole result of ``fit``."""
     record = fit.records[0]
     result: dict[str, Any] = {
@@ -111,7 +113,7 @@ def as_json(fit: Fit, *, command: str = "fit", command_line: str = "", version: 
         "alternatives": [],
         "verdict": "complete" if fit.adequate else "incomplete",
         "verdict_text": verdict_text(fit),
-        "cross_check": cross_check(fit),
+        "cross_check": cross_check(fit) if checked is None else checked,
         "starts": {"tried": fit.tried, "agreeing": fit.agreeing},
         "windows_tied": fit.tied,
         "seconds": {key: round(value, 4) for key, value in fit.seconds.items()},
