@@ -12,7 +12,6 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
 
 from ..fitting.fit import TIES
@@ -76,7 +75,7 @@ def _score(bench: Workbench, trial: Trial, shapes: dict[str, AbstractEffect], gr
     problem, _ = bench.problem(
         bench.effects(trial), trial.system, extra=[f"{name}.{n}" for name, n in columns], shapes=shapes
     )
-    problem = eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(TIES[0][-1] if trial.tied else 0.0))
+    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1] if trial.tied else 0.0))
     schur, pull, cost, scales = bench.look(problem, trial.unknowns)
     q = len(trial.free)
     found = []

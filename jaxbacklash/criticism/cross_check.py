@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
@@ -129,15 +130,18 @@ def _loads(fit: Fit) -> np.ndarray | None:
     system, record = fit.system, fit.records[0]
     if not system.effects:
         return None
-    t, zero = jnp.asarray(record.t), np.zeros(record.samples)
+    zero = np.zeros(record.samples)
     channels = record.channels
     x, dx = _smooth(record.t, channels.get("x", zero))
     y, dy = _smooth(record.t, channels["y"] if "y" in channels else channels["z"] + channels.get("x", zero))
-    drive = Drive(jnp.asarray(x), jnp.asarray(dx), jnp.asarray(zero))
+    return np.asarray(_torque_of_effects(system, record.t, y, dy, Drive(x, dx, zero)))
 
-    def torque(of: System) -> np.ndarray:
-        state = (jnp.asarray(y), jnp.asarray(dy), *(jnp.zeros(record.samples) for _ in of.state_names[2:]))
-        return np.asarray(of.torques(of.instant(t, state, drive), state)[0])
+
+@eqx.filter_jit
+def _torque_of_effects(system: System, t: Any, y: Any, dy: Any, drive: Drive) -> Any:
+    def torque(of: System) -> Any:
+        state = (y, dy, *(jnp.zeros_like(y) for _ in of.state_names[2:]))
+        return of.torques(of.instant(t, state, drive), state)[0]
 
     return torque(system) - torque(system.without(*system.effects))
 

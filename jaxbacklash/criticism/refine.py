@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
 
 from ..errors import BadInput
@@ -142,7 +141,7 @@ class _Judge:
     def __call__(self, trial: Trial) -> Fit:
         bench = self.bench
         problem, free = bench.problem(bench.effects(trial), trial.system)
-        still = Unknowns(jnp.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
+        still = Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
         scored, _ = score(problem, still, bench.layout, group=bench.group)
         held = None if self.heldout is None else self._predict(problem)
         q = len(free)
@@ -156,7 +155,7 @@ class _Judge:
         estimates = judge(
             plain, free, stderr, records, per_inertia=self.per_inertia, translational=self.translational
         )
-        joined = eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(TIES[0][-1] if trial.tied else 0.0))
+        joined = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1] if trial.tied else 0.0))
         return Fit(
             plain, free, estimates, scored, held, records, bench.layout.noise, bench.layout.input_noise, covariance, 1, 1,
             trial.tied, trial.cost, 0, self.start, self.model, self.per_inertia, self.translational, {}, joined, still,

@@ -12,7 +12,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
 
 from ..fitting.fit import ADEQUATE, TIES, freedom, prepare, tie_windows
@@ -137,7 +136,7 @@ class Workbench:
         unknowns = first_guess(problem)
         if start is not None:
             same = start.system.state_names == problem.system.state_names
-            own = start.unknowns.starts if same else jnp.asarray(unknowns.starts).at[:2].set(start.unknowns.starts[:2])
+            own = start.unknowns.starts if same else np.concatenate([start.unknowns.starts[:2], unknowns.starts[2:]])
             unknowns = Unknowns(unknowns.theta, own, start.unknowns.coefficients)
         self.fits += 1
         if tied:
@@ -152,9 +151,9 @@ class Workbench:
 
     def look(self, problem: Problem, unknowns: Unknowns) -> tuple[np.ndarray, np.ndarray, float, np.ndarray]:
         """Information about all columns (q, q), their score (q,), the cost, and the columns' scales (q,), at a point."""
-        still = Unknowns(jnp.zeros(problem.directions.shape[1]), unknowns.starts, unknowns.coefficients)
+        still = Unknowns(np.zeros(problem.directions.shape[1]), unknowns.starts, unknowns.coefficients)
         stats = minimise(problem, still, ArrowLevenbergMarquardt(limit=1)).stats
-        scales = np.asarray(jnp.sum(problem.directions, axis=0))
+        scales = np.sum(problem.directions, axis=0)
         return np.asarray(stats["schur"]), np.asarray(stats["pull"]), float(stats["cost"]), scales
 
     def quieter(self, factor: float) -> None:
@@ -180,7 +179,7 @@ class Workbench:
         return Trial(
             fitted, names, free, solution.value, cost, float(np.sqrt(2.0 * cost / count)),
             np.asarray(solution.stats["schur"]), np.asarray(solution.stats["pull"]),
-            np.asarray(jnp.sum(problem.directions, axis=0)), tied, int(solution.stats["steps"]) < patience, float(penalty),
+            np.sum(problem.directions, axis=0), tied, int(solution.stats["steps"]) < patience, float(penalty),
             _correlation(self.windows, np.asarray(solution.stats["predicted"].motion)),
         )  # fmt: skip
 
@@ -229,10 +228,10 @@ def _pad(problem: Problem) -> Problem:
         lambda p: (p.directions, p.lower, p.upper, p.shrink),
         problem,
         (
-            jnp.pad(problem.directions, ((0, 0), (0, extra))),
-            jnp.pad(problem.lower, (0, extra)),
-            jnp.pad(problem.upper, (0, extra)),
-            jnp.pad(problem.shrink, (0, extra)),
+            np.pad(problem.directions, ((0, 0), (0, extra))),
+            np.pad(problem.lower, (0, extra)),
+            np.pad(problem.upper, (0, extra)),
+            np.pad(problem.shrink, (0, extra)),
         ),
     )
 
