@@ -12,7 +12,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft, signal
+from scipy import fft
+from scipy.ndimage import uniform_filter1d
 
 from .cycles import CycleSpline, SlowCurve
 from .smoothing import choose_intervals, fit_spline
@@ -56,6 +57,8 @@ def _mirrored(values: np.ndarray, pad: int) -> np.ndarray:
 
 def low_passed(values: np.ndarray, share: float) -> np.ndarray:
     """The paper's filter: zero-phase low-pass at ``share`` of half the sample rate (0.005 and 0.01 there), shape (N,)."""
+    from scipy import signal  # half a second to import, and a fit's cross-check does without
+
     return signal.sosfiltfilt(signal.butter(2, share, output="sos"), values)
 
 
@@ -121,11 +124,10 @@ def carrier(t: np.ndarray, values: np.ndarray, *, cycles: float = 1.0) -> Carrie
 def _rising(t: np.ndarray, phase: np.ndarray, turns: float) -> np.ndarray:
     """The phase over a running mean of a few average cycles, made to rise."""
     length = int(np.clip(round(2.0 * t.size / turns), 3, max(3, t.size // 8)))
-    kernel = np.ones(length) / length
     padded = np.concatenate(
         [2 * phase[0] - phase[length:0:-1], phase, 2 * phase[-1] - phase[-2 : -length - 2 : -1]]
     )
-    return _monotone(signal.oaconvolve(padded, kernel, mode="same")[length : length + t.size])
+    return _monotone(uniform_filter1d(padded, length)[length : length + t.size])
 
 
 def _monotone(phase: np.ndarray) -> np.ndarray:

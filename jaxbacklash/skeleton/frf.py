@@ -12,7 +12,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import signal
 
 from ..errors import BadInput, NoAnswer
 from ..records import Record
@@ -75,6 +74,8 @@ def frequency_response(
         raise BadInput(f"{where}: segments of {length:g} s; wanted at least 32 samples each and two in {duration:g} s")
     force, motion = record.channels["F"], record.channels["y"]
     keywords = {"fs": record.rate_hz, "nperseg": each, "window": "hann", "detrend": "linear"}
+    from scipy import signal  # half a second to import
+
     frequency, cross = signal.csd(force, motion, **keywords)
     _, of_force = signal.welch(force, **keywords)
     _, of_motion = signal.welch(motion, **keywords)

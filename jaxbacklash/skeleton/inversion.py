@@ -19,7 +19,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import optimize, stats
+from scipy import optimize, special
 
 from .describing_function import dead_zone, describing_function
 from .fundamental import Fundamental
@@ -81,7 +81,7 @@ class Inversion:
     @property
     def reach(self) -> float:
         """Half width of a 95 % interval in standard errors: Student's t."""
-        return float(stats.t.ppf(0.975, max(self.blocks - 1, 1)))
+        return float(special.stdtrit(max(self.blocks - 1, 1), 0.975))
 
 
 def invert(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
-from scipy.signal import find_peaks
 
 
 def autocorrelation(series: np.ndarray, lags: int) -> np.ndarray:
@@ -29,6 +28,8 @@ def mean_period(series: np.ndarray) -> float:
     -------
     samples; the length of the series where it has fewer than three peaks
     """
+    from scipy.signal import find_peaks  # half a second to import
+
     first = correlation_time(series)
     smooth = uniform_filter1d(series, max(1, first // 4)) if first > 2 else series
     peaks = find_peaks(smooth, prominence=float(np.std(smooth)) / 3.0)[0]
