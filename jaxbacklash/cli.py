@@ -67,12 +67,13 @@ def fit(
 ) -> None:
     """Fit backlash, stiffness and damping (and effects you name) to one or more records."""
     from .commands import fit as command
-    from .commands.common import load_laws
+    from .commands.common import Reading, load_laws
 
     load_laws(laws)
+    reading = Reading(columns, unit, scale, resample_rate or resample)
     command.run(
-        records, inertia=inertia, model=model, effects=effects, heldout=heldout, out=out, as_json=json, columns=columns,
-        unit=unit, scale=scale, resample=resample_rate or resample, window=window, starts=starts, profile=profile,
+        records, inertia=inertia, model=model, effects=effects, heldout=heldout, out=out, as_json=json,
+        reading=reading, window=window, starts=starts, profile=profile,
         translational=translation, seed=seed,
     )  # fmt: skip
 
@@ -95,11 +96,12 @@ def compare(
 ) -> None:
     """Compare a model with a record it may never have seen: where does it fail, and by how many noises?"""
     from .commands import compare as command
-    from .commands.common import load_laws
+    from .commands.common import Reading, load_laws
 
     load_laws(laws)
+    reading = Reading(columns, unit, scale, resample_rate or resample)
     command.run(
-        model, record, out=out, as_json=json, columns=columns, unit=unit, scale=scale, resample=resample_rate or resample,
+        model, record, out=out, as_json=json, reading=reading,
         window=window, translational=translation,
     )  # fmt: skip
 
@@ -125,12 +127,13 @@ def diagnose(
 ) -> None:
     """Fit a model, say where it fails, and show the torque it misses and what that depends on."""
     from .commands import diagnose as command
-    from .commands.common import load_laws
+    from .commands.common import Reading, load_laws
 
     load_laws(laws)
+    reading = Reading(columns, unit, scale, resample_rate or resample)
     command.run(
-        record, inertia=inertia, model=model, effects=effects, out=out, as_json=json, columns=columns, unit=unit, scale=scale,
-        resample=resample_rate or resample, window=window, starts=starts, translational=translation, seed=seed,
+        record, inertia=inertia, model=model, effects=effects, out=out, as_json=json,
+        reading=reading, window=window, starts=starts, translational=translation, seed=seed,
     )  # fmt: skip
 
 
@@ -154,12 +157,13 @@ def refine(
 ) -> None:
     """Find the effects a record needs beyond the base model, add them one by one, and say what is left."""
     from .commands import refine as command
-    from .commands.common import load_laws
+    from .commands.common import Reading, load_laws
 
     load_laws(laws)
+    reading = Reading(columns, unit, scale, resample_rate or resample)
     command.run(
-        record, heldout=heldout, inertia=inertia, model=model, out=out, as_json=json, columns=columns, unit=unit, scale=scale,
-        resample=resample_rate or resample, window=window, translational=translation, seed=seed,
+        record, heldout=heldout, inertia=inertia, model=model, out=out, as_json=json,
+        reading=reading, window=window, translational=translation, seed=seed,
     )  # fmt: skip
 
 
@@ -180,10 +184,11 @@ def skeleton(
 ) -> None:
     """Play, stiffness and damping from envelopes and phases: Hilbert transform and wavelet, which stand beside the fit."""
     from .commands import skeleton as command
+    from .commands.common import Reading
 
+    reading = Reading(columns, unit, scale, resample_rate or resample)
     command.run(
-        record, inertia=inertia, gravity=gravity, out=out, as_json=json, columns=columns, unit=unit, scale=scale,
-        resample=resample_rate or resample, translational=translation,
+        record, inertia=inertia, gravity=gravity, out=out, as_json=json, reading=reading, translational=translation,
     )  # fmt: skip
 
 
@@ -206,10 +211,12 @@ def chaos(
 ) -> None:
     """Is a measured series chaotic, how much, and why does it look so? Verdict, exponent with interval, pictures."""
     from .commands import chaos as command
+    from .commands.common import Reading
 
+    reading = Reading(columns, unit, scale, resample_rate or resample)
     command.run(
-        record, channel=channel, out=out, as_json=json, columns=columns, unit=unit, scale=scale,
-        resample=resample_rate or resample, rate=rate, surrogates=surrogates, count=count, clean=clean, seed=seed,
+        record, channel=channel, out=out, as_json=json,
+        reading=reading, rate=rate, surrogates=surrogates, count=count, clean=clean, seed=seed,
     )  # fmt: skip
 
 

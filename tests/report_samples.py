@@ -104,3 +104,15 @@ def all_figures():
         "ranking": figures.candidate_ranking(stages()[0]["candidates"], current=12.9),
         "profile": figures.misfit_profile(np.linspace(-1, 1, 11), np.ones(10), np.arange(10), xlabel="z′ [rad/s]"),
     }
+
+
+def numbers(node):
+    """All floats of a result, however deep."""
+    if isinstance(node, dict):
+        for value in node.values():
+            yield from numbers(value)
+    elif isinstance(node, list):
+        for value in node:
+            yield from numbers(value)
+    elif isinstance(node, float):
+        yield node

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from .independent.chaotic import HENON
+from .report_samples import numbers
 from .test_cli import call as call  # the fixture that runs the command line
 from .test_cli import sentence
 
@@ -23,17 +24,6 @@ def driven(tmp_path_factory):
     t = 0.01 * np.arange(1500)
     z = 1e-3 * HENON.series(1500, 1, 3)[0]
     return write(folder / "driven.csv", "t,x,z", t, 0.1 * np.sin(2.0 * np.pi * 4.0 * t), z)
-
-
-def numbers(entry):
-    if isinstance(entry, dict):
-        for value in entry.values():
-            yield from numbers(value)
-    elif isinstance(entry, list):
-        for value in entry:
-            yield from numbers(value)
-    elif isinstance(entry, float):
-        yield entry
 
 
 def test_result_and_page(call, driven, tmp_path):

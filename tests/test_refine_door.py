@@ -16,6 +16,7 @@ from jaxbacklash.criticism.candidates import Candidate
 from jaxbacklash.criticism.ranking import judged, table
 from jaxbacklash.report.refine_result import candidates_json
 
+from .report_samples import numbers
 from .test_bad_input import CASES
 from .test_cli import call as call  # the fixture that runs the command line
 from .test_cli import sentence
@@ -119,17 +120,6 @@ def hum(tmp_path_factory):
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     return folder, done
-
-
-def numbers(node):
-    if isinstance(node, dict):
-        for value in node.values():
-            yield from numbers(value)
-    elif isinstance(node, list):
-        for value in node:
-            yield from numbers(value)
-    elif isinstance(node, float):
-        yield node
 
 
 @pytest.mark.slow

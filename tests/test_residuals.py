@@ -6,6 +6,7 @@ import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.commands import diagnose as command
+from jaxbacklash.commands.common import Reading
 from jaxbacklash.model_file import load_model
 
 from .hidden import hidden
@@ -60,8 +61,8 @@ def test_command(tmp_path, capsys):
     record, rig, _, _ = hidden("gravity", "stepped", 3)
     jb.write_record(record, tmp_path / "run.csv")
     options = {
-        "inertia": rig.inertia, "effects": None, "columns": None, "unit": None, "scale": None, "resample": False,
-        "window": 0.2, "starts": 1, "translational": False, "seed": 0,
+        "inertia": rig.inertia, "effects": None, "reading": Reading(), "window": 0.2, "starts": 1, "translational": False,
+        "seed": 0,
     }  # fmt: skip
     command.run(tmp_path / "run.csv", model="joint", out=tmp_path / "why", as_json=False, **options)
     text = capsys.readouterr().out

@@ -8,11 +8,10 @@ from pathlib import Path
 
 from .. import __version__
 from ..errors import BadInput
-from ..records import parse_columns, parse_scales, parse_units, read_series
 from ..report.chaos_report import chaos_report
 from ..report.chaos_result import chaos_json
 from ..timeseries import chaos
-from .common import json_text, out_folder, progress, write_text
+from .common import Reading, json_text, out_folder, progress, write_text
 
 
 def run(
@@ -21,10 +20,7 @@ def run(
     channel: str | None,
     out: Path | None,
     as_json: bool,
-    columns: list[str] | None,
-    unit: list[str] | None,
-    scale: list[str] | None,
-    resample: float | bool,
+    reading: Reading,
     rate: float | None,
     surrogates: str,
     count: int,
@@ -32,10 +28,7 @@ def run(
     seed: int,
 ) -> None:
     """Read one channel, judge it, print; write the result and the report when a folder is given."""
-    source = read_series(
-        path, channel, columns=parse_columns(columns) if columns else None, units=parse_units(unit) if unit else None,
-        scales=parse_scales(scale) if scale else None, resample=resample or None, rate=rate,
-    )  # fmt: skip
+    source = reading.series(path, channel, rate)
     folder = out_folder(out)
     with progress(as_json) as tell:
         try:

@@ -8,25 +8,64 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ..errors import BadInput
 from ..mechanics import AbstractEffect
-from ..records import Record, parse_columns, parse_scales, parse_units, read_record
+from ..model_file import load_model
+from ..records import (
+    MeasuredSeries,
+    Record,
+    parse_columns,
+    parse_scales,
+    parse_units,
+    read_record,
+    read_series,
+)
+from ..system import System
 
 
-def read(
-    path: Path, columns: list[str] | None, unit: list[str] | None, scale: list[str] | None, resample: float | bool
-) -> Record:
-    """Read a record with the command line's mappings; ``resample`` True means at its own median rate."""
-    return read_record(
-        path,
-        columns=parse_columns(columns) if columns else None,
-        units=parse_units(unit) if unit else None,
-        scales=parse_scales(scale) if scale else None,
-        resample=resample or None,
-    )
+@dataclass(frozen=True)
+class Reading:
+    """How the user wants files read: the mappings as they were typed; ``resample`` True means at a record's own median rate."""
+
+    columns: list[str] | None = None
+    unit: list[str] | None = None
+    scale: list[str] | None = None
+    resample: float | bool = False
+
+    def record(self, path: Path) -> Record:
+        """A record."""
+        return read_record(path, **self._options())
+
+    def series(self, path: Path, channel: str | None, rate: float | None) -> MeasuredSeries:
+        """One channel of a table."""
+        return read_series(path, channel, rate=rate, **self._options())
+
+    def _options(self) -> dict[str, Any]:
+        return {
+            "columns": parse_columns(self.columns) if self.columns else None,
+            "units": parse_units(self.unit) if self.unit else None,
+            "scales": parse_scales(self.scale) if self.scale else None,
+            "resample": self.resample or None,
+        }
+
+
+def model_of_file(model: str, inertia: float | None) -> System | None:
+    """The system of a model file, None for a model by name.
+
+    Raises
+    ------
+    BadInput
+        An inertia is given beside the file, which states its own.
+    """
+    if not model.endswith(".toml"):
+        return None
+    if inertia is not None:
+        raise BadInput("--inertia: the model file already states the inertia; give one of the two")
+    return load_model(model)
 
 
 def check_window(window: float) -> None:

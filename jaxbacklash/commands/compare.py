@@ -11,7 +11,7 @@ from ..fitting import compare as compare_records
 from ..model_file import dump_model, load_model
 from ..report.fit_report import compare_report
 from ..report.result import comparison_json
-from .common import check_window, json_text, out_folder, progress, read, write_text
+from .common import Reading, check_window, json_text, out_folder, progress, write_text
 
 
 def run(
@@ -20,17 +20,14 @@ def run(
     *,
     out: Path | None,
     as_json: bool,
-    columns: list[str] | None,
-    unit: list[str] | None,
-    scale: list[str] | None,
-    resample: float | bool,
+    reading: Reading,
     window: float,
     translational: bool,
 ) -> None:
     """Read both, predict window by window, print; write the result and the report when a folder is given."""
     check_window(window)
     system = load_model(model)
-    record = read(path, columns, unit, scale, resample)
+    record = reading.record(path)
     folder = out_folder(out)
     with progress(as_json) as tell:
         tell("predicting", 0.1)

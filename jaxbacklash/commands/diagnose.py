@@ -14,12 +14,11 @@ from ..errors import BadInput
 from ..fitting import Fit
 from ..fitting import fit as fit_records
 from ..fitting.setup import add_effects
-from ..model_file import dump_model, load_model
+from ..model_file import dump_model
 from ..report.diagnose_report import diagnose_report
 from ..report.refine_result import candidates_json
 from ..report.result import as_json as result_of
-from ..system import System
-from .common import check_window, json_text, names, out_folder, progress, read, write_text
+from .common import Reading, check_window, json_text, model_of_file, names, out_folder, progress, write_text
 
 
 def run(
@@ -30,10 +29,7 @@ def run(
     effects: str | None,
     out: Path | None,
     as_json: bool,
-    columns: list[str] | None,
-    unit: list[str] | None,
-    scale: list[str] | None,
-    resample: float | bool,
+    reading: Reading,
     window: float,
     starts: int,
     translational: bool,
@@ -43,13 +39,11 @@ def run(
     check_window(window)
     if starts < 1:
         raise BadInput(f"--starts {starts}: wanted one or more")
-    record = read(path, columns, unit, scale, resample)
+    record = reading.record(path)
     folder = out_folder(out)
-    system: System | None = None
-    if model.endswith(".toml"):
-        if inertia is not None:
-            raise BadInput("--inertia: the model file already states the inertia; give one of the two")
-        system = add_effects(load_model(model), names(effects))
+    system = model_of_file(model, inertia)
+    if system is not None:
+        system = add_effects(system, names(effects))
     with progress(as_json) as tell:
         fit = fit_records(
             record, model=model if system is None else "joint", inertia=inertia, effects=names(effects), system=system,

@@ -13,11 +13,10 @@ from ..errors import BadInput
 from ..fitting import Fit
 from ..fitting import fit as fit_records
 from ..fitting.setup import add_effects
-from ..model_file import dump_model, load_model
+from ..model_file import dump_model
 from ..report.fit_report import fit_report
 from ..report.result import as_json as result_of
-from ..system import System
-from .common import check_window, json_text, names, out_folder, progress, read, write_text
+from .common import Reading, check_window, json_text, model_of_file, names, out_folder, progress, write_text
 
 
 def run(
@@ -29,10 +28,7 @@ def run(
     heldout: Path | None,
     out: Path | None,
     as_json: bool,
-    columns: list[str] | None,
-    unit: list[str] | None,
-    scale: list[str] | None,
-    resample: float | bool,
+    reading: Reading,
     window: float,
     starts: int,
     profile: bool,
@@ -43,14 +39,10 @@ def run(
     check_window(window)
     if starts < 1:
         raise BadInput(f"--starts {starts}: wanted one or more")
-    records = [read(path, columns, unit, scale, resample) for path in paths]
-    held = read(heldout, columns, unit, scale, resample) if heldout is not None else None
+    records = [reading.record(path) for path in paths]
+    held = reading.record(heldout) if heldout is not None else None
     folder = out_folder(out)
-    system: System | None = None
-    if model.endswith(".toml"):
-        system = load_model(model)
-        if inertia is not None:
-            raise BadInput("--inertia: the model file already states the inertia; give one of the two")
+    system = model_of_file(model, inertia)
     added = names(effects)
     if system is not None:
         system = add_effects(system, added)

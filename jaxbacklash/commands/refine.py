@@ -12,11 +12,11 @@ from .. import __version__
 from ..criticism import Findings, Refinement, where_it_fails
 from ..criticism import refine as refine_record
 from ..criticism.ranking import plain
-from ..errors import BadInput, NoAnswer
-from ..model_file import dump_model, load_model
+from ..errors import NoAnswer
+from ..model_file import dump_model
 from ..report.refine_result import refinement_json
 from ..system import System
-from .common import check_window, json_text, out_folder, progress, read, write_text
+from .common import Reading, check_window, json_text, model_of_file, out_folder, progress, write_text
 
 WORTH_A_TABLE = 0.3
 """Share of the missing torque that a table must predict out of sample before it is offered as a stopgap."""
@@ -30,18 +30,15 @@ def run(
     model: str,
     out: Path | None,
     as_json: bool,
-    columns: list[str] | None,
-    unit: list[str] | None,
-    scale: list[str] | None,
-    resample: float | bool,
+    reading: Reading,
     window: float,
     translational: bool,
     seed: int,
 ) -> None:
     """Read, find the missing effects, print; write the result, the model and the report when a folder is given."""
     check_window(window)
-    record = read(path, columns, unit, scale, resample)
-    held = read(heldout, columns, unit, scale, resample) if heldout is not None else None
+    record = reading.record(path)
+    held = reading.record(heldout) if heldout is not None else None
     folder = out_folder(out)
     system = _given(model, inertia)
     with progress(as_json) as tell:
@@ -54,11 +51,9 @@ def run(
 
 def _given(model: str, inertia: float | None) -> System | None:
     """The joint of a model file, None for a model by name."""
-    if not model.endswith(".toml"):
+    full = model_of_file(model, inertia)
+    if full is None:
         return None
-    if inertia is not None:
-        raise BadInput("--inertia: the model file already states the inertia; give one of the two")
-    full = load_model(model)
     if full.effects:
         known = ", ".join(sorted(full.effects))
         warnings.warn(

@@ -9,7 +9,7 @@ from pathlib import Path
 from .. import __version__
 from ..report.skeleton_result import skeletons_json
 from ..skeleton import skeleton
-from .common import json_text, out_folder, progress, read, write_text
+from .common import Reading, json_text, out_folder, progress, write_text
 
 
 def run(
@@ -19,14 +19,11 @@ def run(
     gravity: float,
     out: Path | None,
     as_json: bool,
-    columns: list[str] | None,
-    unit: list[str] | None,
-    scale: list[str] | None,
-    resample: float | bool,
+    reading: Reading,
     translational: bool,
 ) -> None:
     """Read, estimate by both methods, print; write the result and the report when a folder is given."""
-    record = read(path, columns, unit, scale, resample)
+    record = reading.record(path)
     folder = out_folder(out)
     with progress(as_json) as tell:
         found = skeleton(record, inertia, gravity=gravity, translational=translational, progress=tell)
