@@ -9,10 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
+from ..compiled import kept_jit
 from ..effects import Contact
 from ..errors import BadInput, NoAnswer
 from ..fitting import Fit
@@ -137,7 +137,7 @@ def _loads(fit: Fit) -> np.ndarray | None:
     return np.asarray(_torque_of_effects(system, record.t, y, dy, Drive(x, dx, zero)))
 
 
-@eqx.filter_jit
+@kept_jit
 def _torque_of_effects(system: System, t: Any, y: Any, dy: Any, drive: Drive) -> Any:
     def torque(of: System) -> Any:
         state = (y, dy, *(jnp.zeros_like(y) for _ in of.state_names[2:]))

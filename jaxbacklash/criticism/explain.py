@@ -14,6 +14,7 @@ import jax
 import jax.numpy as jnp
 import jax.scipy.linalg as jsl
 
+from ..compiled import kept_jit
 from ..fitting.shooting import Blocks
 from .smoother import Point, Smoother, linearise, prior, solve, torque_places
 
@@ -31,14 +32,14 @@ class Explained(eqx.Module):
     torque: Array
 
 
-@eqx.filter_jit
+@kept_jit
 def prepare_linear(s: Smoother, at: Point) -> tuple[Blocks, Any]:
     """The chain at a point and the remainder's prior (first differences), for many calls of `explain`."""
     diagonal, below, slope, rough = prior(s, at)
     return linearise(s, at), (diagonal[1], below[1], slope[1], rough[1])
 
 
-@eqx.filter_jit
+@kept_jit
 def explain(
     s: Smoother, at: Point, linear: Blocks, remainder: Any, phi: Array, penalty: Array, log_precisions: Array
 ) -> Explained:

@@ -10,12 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
 from scipy import linalg
 
+from ..compiled import kept_jit
 from ..mechanics import AbstractEffect, Drive, canonical_name
 from ..parameters import ravel, specs, unravel
 from ..records import Record
@@ -144,7 +144,7 @@ def _whitener(residual: np.ndarray) -> Any:
     return lambda rows: lfilter(taps, [1.0], rows, axis=0)[order:]
 
 
-@eqx.filter_jit
+@kept_jit
 def _torques(system: System, vector: Any, seeds: Any, t: Any, y: Any, dy: Any, x: Any, dx: Any) -> tuple[Any, Any]:
     """All torque on the link along a motion (N,), and its derivatives (q, N) along ``seeds`` (q, p)."""
     own = jnp.zeros((len(system.state_names) - 2, t.shape[0]))
@@ -164,7 +164,7 @@ def _torques(system: System, vector: Any, seeds: Any, t: Any, y: Any, dy: Any, x
     return torque, jax.vmap(lambda e: jax.jvp(along, (vector,), (e,))[1])(seeds)
 
 
-@eqx.filter_jit
+@kept_jit
 def _own_torque(effect: AbstractEffect, system: System, t: Any, y: Any, dy: Any, x: Any, dx: Any) -> Any:
     """Torque of one effect along a motion (N,)."""
     alone = _beside(effect, system)

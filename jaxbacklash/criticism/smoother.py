@@ -17,6 +17,7 @@ import jax.numpy as jnp
 import jax.scipy.linalg as jsl
 import numpy as np
 
+from ..compiled import kept_jit
 from ..fitting.shooting import (
     Blocks,
     Prediction,
@@ -203,7 +204,7 @@ def prior(s: Smoother, at: Point) -> tuple[Array, Array, Array, Array]:
     return diagonal, below, slope, rough
 
 
-@eqx.filter_jit
+@kept_jit
 def improve(s: Smoother, at: Point, orders: Array, log_precisions: Array) -> Improved:
     """One Gauss-Newton step under the likeliest of G priors.
 
@@ -241,7 +242,7 @@ def improve(s: Smoother, at: Point, orders: Array, log_precisions: Array) -> Imp
     return Improved(point, best, told, without, linear.cost, rough)
 
 
-@eqx.filter_jit
+@kept_jit
 def finish(s: Smoother, at: Point, order: Array, log_precision: Array) -> tuple[Array, Array, Trajectory]:
     """Standard errors of the torque (W, K) in its unit and of the parameters (q,) in theirs, and the trajectories."""
     linear = linearise(s, at)

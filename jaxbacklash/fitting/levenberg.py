@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 import optimistix as optx
 
+from ..compiled import kept_jit
 from .arrow import solve
 from .shooting import Blocks, Prediction, Problem, Unknowns, linearise
 
@@ -104,7 +105,7 @@ def minimise(problem: Problem, start: Unknowns, solver: ArrowLevenbergMarquardt,
     return jax.tree.map(np.asarray, _minimise(problem, start, solver, max_steps))
 
 
-@eqx.filter_jit
+@kept_jit
 def _minimise(problem: Problem, start: Unknowns, solver: ArrowLevenbergMarquardt, max_steps: int) -> optx.Solution:
 
     def residual(y: Unknowns, args: Problem) -> Array:

@@ -1,0 +1,132 @@
+"""Traced programs are found by the next process, and only where they are the same."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+import jaxbacklash.compiled as compiled
+from jaxbacklash.compiled import kept_jit
+from jaxbacklash.effects import Gravity
+from jaxbacklash.mechanics import AbstractEffect
+
+
+@pytest.fixture
+def cache(tmp_path: Path):
+    """An empty cache; the one that the tests share comes back afterwards."""
+    before = jax.config.jax_compilation_cache_dir
+    jax.config.update("jax_compilation_cache_dir", str(tmp_path))
+    yield tmp_path / "programs"
+    jax.config.update("jax_compilation_cache_dir", before)
+
+
+def process(traced: list[str]):
+    """The same function as a process of its own would see it: nothing in memory."""
+
+    def work(thing, a, b, power):
+        traced.append("traced")
+        scale = thing.G if isinstance(thing, AbstractEffect) else 1.0
+        return {"sum": scale * jnp.sum(a**power), "b": b, "word": "kept"}
+
+    work.__module__, work.__qualname__ = "jaxbacklash.fitting.work", "work"
+    return kept_jit(work)
+
+
+def test_the_next_process_does_not_trace(cache):
+    traced: list[str] = []
+    effect = Gravity(G=jnp.asarray(3.0))
+    for a in (np.arange(4.0), np.arange(4.0) + 1.0):
+        found = process(traced)(effect, a, None, 2)
+        assert found["sum"] == pytest.approx(3.0 * np.sum(a**2))
+        assert found["word"] == "kept"
+        assert found["b"] is None
+    assert traced == ["traced"]
+    assert len(list(cache.iterdir())) == 1
+
+
+@pytest.mark.parametrize("other", [
+    (None, np.arange(5.0), None, 2), (None, np.arange(4), None, 2), (None, np.arange(4.0), None, 3),
+    (None, np.arange(4.0), np.zeros(2), 2), (Gravity(G=jnp.asarray(1.0)), np.arange(4.0), None, 2),
+])  # fmt: skip
+def test_another_shape_kind_structure_or_fixed_part_is_another_program(cache, other):
+    traced: list[str] = []
+    process(traced)(None, np.arange(4.0), None, 2)
+    process(traced)(*other)
+    assert len(traced) == 2
+
+
+def test_where_an_array_stands_matters(cache):
+    def difference(a, b):
+        return -a if b is None else b
+
+    difference.__module__ = "jaxbacklash.fitting.difference"
+    assert kept_jit(difference)(np.ones(2), None)[0] == -1.0
+    assert kept_jit(difference)(None, np.ones(2))[0] == 1.0
+
+
+def test_a_law_of_ones_own_is_never_taken_from_a_file(cache):
+    def law(factor):
+        class Own(AbstractEffect):
+            def torque(self, now):
+                return factor * now
+
+        return Own()
+
+    def work(effect, a):
+        return effect.torque(a)
+
+    for factor in (1.0, 2.0):
+        assert kept_jit(work)(law(factor), np.ones(3))[0] == factor
+    assert not cache.exists()
+
+
+def test_changed_source_or_versions_are_another_program(cache, monkeypatch):
+    traced: list[str] = []
+    process(traced)(None, np.arange(4.0), None, 2)
+    monkeypatch.setattr(compiled, "_setting", lambda: "another version")
+    process(traced)(None, np.arange(4.0), None, 2)
+    assert len(traced) == 2
+
+
+@pytest.mark.parametrize("damage", [lambda text: b"", lambda text: text[: len(text) // 2], lambda text: b"x" * len(text)])
+def test_a_damaged_file_is_made_anew(cache, damage):
+    traced: list[str] = []
+    expected = process(traced)(None, np.arange(4.0), None, 2)["sum"]
+    (path,) = cache.iterdir()
+    path.write_bytes(damage(path.read_bytes()))
+    assert process(traced)(None, np.arange(4.0), None, 2)["sum"] == expected
+    assert len(traced) == 2
+    process(traced)(None, np.arange(4.0), None, 2)
+    assert len(traced) == 2
+
+
+def test_without_a_cache_and_within_a_trace_it_is_a_jit(cache):
+    traced: list[str] = []
+    work = process(traced)
+    inside = eqx.filter_jit(lambda a: work(None, a, None, 2)["sum"])(jnp.arange(3.0))
+    assert inside == 5.0
+    assert not cache.exists()
+    jax.config.update("jax_compilation_cache_dir", None)
+    assert process(traced)(None, np.arange(3.0), None, 2)["sum"] == 5.0
+    assert not cache.exists()
+
+
+def test_linear_algebra_and_several_devices_come_back(cache):
+    def solve(matrix, right):
+        cores = jax.sharding.Mesh(np.asarray(jax.devices()), ("cores",))
+        share = jax.sharding.PartitionSpec()
+        spread = jax.shard_map(lambda a: a + jax.lax.axis_index("cores") * 0.0, mesh=cores, in_specs=share, out_specs=share,
+                               check_vma=False)  # fmt: skip
+        return jnp.linalg.solve(spread(matrix), right), jnp.linalg.cholesky(matrix)
+
+    solve.__module__ = "jaxbacklash.fitting.solve"
+    matrix, right = np.array([[2.0, 1.0], [1.0, 3.0]]), np.array([1.0, 2.0])
+    first, again = kept_jit(solve)(matrix, right), kept_jit(solve)(matrix, right)
+    np.testing.assert_array_equal(first[0], again[0])
+    np.testing.assert_allclose(matrix @ np.asarray(again[0]), right, rtol=1e-14)
+    np.testing.assert_allclose(np.asarray(again[1]) @ np.asarray(again[1]).T, matrix, rtol=1e-14)
