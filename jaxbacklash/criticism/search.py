@@ -77,13 +77,18 @@ class Search:
                 effect = with_values(effect, {n: values(effect)[n] + taken for n in strengths(effect)})
         key = (frozenset(present) | {candidate.name}, before.tied)
         if key not in self.known:
-            self._keep(self.bench.fit({**present, candidate.name: effect}, before, tied=before.tied))
+            effects = {**present, candidate.name: effect}
+            trial = self._keep(self.bench.fit(effects, before, tied=before.tied))
+            if before.tied and trial.cost > before.cost:
+                # More can explain no less: the search has stuck, as dry friction may on a trajectory in one piece.
+                free = self.bench.fit(effects, before, tied=False)
+                self._keep(self.bench.fit(self.bench.effects(free), free, tied=True))
         return self.known[key]
 
     def without(self, before: Trial, name: str) -> Trial:
-        """The model without one of its effects."""
+        """The model without one of its effects, fitted from the model with it unless what is known of it is near that."""
         key = (before.names - {name}, before.tied)
-        if key not in self.known:
+        if key not in self.known or self.known[key].cost - before.cost > significance(before, name) ** 2:
             effects = {n: e for n, e in self.bench.effects(before).items() if n != name}
             self._keep(self.bench.fit(effects, before, tied=before.tied))
         return self.known[key]
