@@ -17,14 +17,17 @@ from ..fitting.fit import SCORE_WINDOW, TIES, Fit, prepare, silent
 from ..fitting.score import Score, score
 from ..fitting.setup import base_system, first_guess, free_names
 from ..fitting.shooting import Problem, Unknowns
-from ..parameters import values, with_values
 from ..precision import require_double_precision
 from ..records import Record
 from ..system import System
 from .candidates import Candidate
+from .experiment import Experiment, separate
 from .search import Search
 from .verdict import Verdict, judge_rest
-from .workbench import Trial, Workbench
+from .workbench import Trial, Workbench, pruned
+
+SEPARATED = 2
+"""Alternatives for which an experiment is looked for."""
 
 
 @dataclass(frozen=True)
@@ -44,13 +47,14 @@ class Refinement:
     """What the loop found.
 
     Attributes: ``stages``, the last one is the model kept; ``alternatives``, other sets of effects that the record cannot
-    tell apart from it; ``verdict``; ``seconds``.
+    tell apart from it; ``experiments`` that would separate the first of them; ``verdict``; ``seconds``.
     """
 
     stages: tuple[Stage, ...]
     alternatives: tuple[tuple[str, ...], ...]
     verdict: Verdict
     seconds: dict[str, float] = field(default_factory=dict)
+    experiments: tuple[Experiment, ...] = ()
 
     @property
     def fit(self) -> Fit:
@@ -122,11 +126,16 @@ def refine(
     judged = _Judge(bench, heldout, model, per_inertia, translational, start)
     stages = tuple(Stage(s.added, s.dropped, judged(s.trial), s.ranking, s.evidence) for s in steps)
     clock["score"] = time.perf_counter()
-    others = tuple(sorted(search.level, key=lambda names: search.level[names]))
+    others = tuple(sorted(search.level, key=lambda names: search.level[names].criterion))
     verdict = judge_rest(steps[-1].trial, [s.fit for s in stages])
+    experiments = []
+    for names in others[:SEPARATED]:
+        progress(f"looking for an experiment that separates {' + '.join(names)}", 0.88)
+        experiments.append(separate(bench, steps[-1].trial, search.level[names], translational=translational))
+    clock["experiment"] = time.perf_counter()
     marks = list(clock.items())
     seconds = {name: at - before for (_, before), (name, at) in pairwise(marks)}
-    return Refinement(stages, others, verdict, seconds)
+    return Refinement(stages, others, verdict, seconds, tuple(e for e in experiments if e is not None))
 
 
 class _Judge:
@@ -170,13 +179,6 @@ class _Judge:
             windows = eqx.tree_at(lambda w: (w.weight, w.drop), windows, (windows.weight / factor, windows.drop / factor))
         other = eqx.tree_at(lambda p: p.windows, problem, windows)
         return score(other, first_guess(other), layout, group=group)[0][0]
-
-
-def pruned(trial: Trial) -> System:
-    """The fitted system without the laws that stand at their null values."""
-    full = trial.system
-    bare = System(full.inertia, full.contact, full.damper, {n: full.effects[n] for n in trial.names}, full.observed)
-    return with_values(bare, values(bare))
 
 
 def _unit(matrix: np.ndarray) -> np.ndarray:

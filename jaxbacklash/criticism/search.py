@@ -49,7 +49,7 @@ class Search:
     def __init__(self, bench: Workbench, progress: Callable[[str, float], None] = silent) -> None:
         self.bench, self.progress = bench, progress
         self.known: dict[tuple[frozenset[str], bool], Trial] = {}
-        self.level: dict[tuple[str, ...], float] = {}
+        self.level: dict[tuple[str, ...], Trial] = {}
 
     def settle(self, trial: Trial) -> Trial:
         """The trial finished, and its windows tied where it is good enough for that."""
@@ -173,9 +173,9 @@ class Search:
         added = next(n for n in best.names if self.bench.laws[n].states)
         return self.forward(best, [steps[0], Step(best, added, (), ())], MUCH)
 
-    def swap(self, steps: list[Step]) -> tuple[list[Step], dict[tuple[str, ...], float]]:
+    def swap(self, steps: list[Step]) -> tuple[list[Step], dict[tuple[str, ...], Trial]]:
         """One effect of the last model after the other replaced by what else would do: the better path, and what does as well."""
-        level: dict[tuple[str, ...], float] = {}
+        level: dict[tuple[str, ...], Trial] = {}
         final = steps[-1].trial
         if not final.names or not final.tied:
             return steps, level
@@ -187,7 +187,7 @@ class Search:
                     added = next(iter(other.names - final.names))
                     return self.swap([*steps[:-1], Step(other, added, (), ())])
                 if -lead < demanded(self.bench):
-                    level[tuple(sorted(other.names))] = other.criterion
+                    level[tuple(sorted(other.names))] = other
         return steps, level
 
     def only_measures(self, other: Trial, final: Trial) -> bool:

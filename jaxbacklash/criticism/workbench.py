@@ -188,6 +188,13 @@ class Workbench:
         return {name: trial.system.effects[name] for name in trial.names}
 
 
+def pruned(trial: Trial) -> System:
+    """The fitted system without the laws that stand at their null values."""
+    full = trial.system
+    bare = System(full.inertia, full.contact, full.damper, {n: full.effects[n] for n in trial.names}, full.observed)
+    return with_values(bare, values(bare))
+
+
 def applicable(law: type[AbstractEffect], base: System) -> bool:
     """Whether a law can act at all in a joint like this one: laws of the contact need a play or a spring."""
     return not (base.contact is None and getattr(law, "needs_contact", False))

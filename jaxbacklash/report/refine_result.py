@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..criticism import Findings, Refinement
+from ..criticism.experiment import Experiment
 from ..criticism.print_refinement import Moved, alternatives_sentence, steps
 from ..criticism.ranking import Ranking, of_stage
 from ..effects import Contact
@@ -59,12 +60,21 @@ def refinement_json(
     result["model"] = stages[0].fit.model
     result["alternatives"] = [list(names) for names in refinement.alternatives]
     result["alternatives_text"] = alternatives_sentence(refinement)
+    result["experiments"] = [_experiment(e) for e in refinement.experiments]
     result["verdict"] = refinement.verdict.word
     result["verdict_text"] = refinement.verdict.text
     result["seconds"] = {name: round(float(value), 4) for name, value in refinement.seconds.items()}
     if findings is not None:
         result |= findings.as_json()
     return result
+
+
+def _experiment(found: Experiment) -> dict[str, Any]:
+    tried = [{"amplitude": s.amplitude, "frequency_hz": s.frequency, "rms_over_noise": finite(s.misfit)} for s in found.tried]
+    return {
+        "rival": list(found.rival), "drive": found.drive, "unit": found.unit, "seconds": found.seconds,
+        "separates": found.parts, "best": tried[found.tried.index(found.best)], "tried": tried, "text": str(found),
+    }  # fmt: skip
 
 
 def _moved_json(step: Moved) -> dict[str, float | None]:
