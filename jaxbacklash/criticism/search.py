@@ -27,6 +27,8 @@ LITTLE, MUCH, MOST = 0.1, 0.25, 0.5
 internal states have not been tried; and if it is an effect of the measuring chain."""
 FAR, GLIMPSE = 2.0, 0.03
 """Where a model is this far off, a law with internal states must show this share in the quick look to be tried."""
+STUCK = 1.01
+"""A tied fit that was not finished and misses by so much more than its free windows has stuck."""
 WHOLE = 60
 """Linearisations allowed to a model that is kept."""
 
@@ -55,7 +57,8 @@ class Search:
         """The trial finished, and its windows tied where it is good enough for that."""
         if not trial.tied and adequate(trial):
             tied = self.bench.fit(self.bench.effects(trial), trial, tied=True, patience=WHOLE)
-            if adequate(tied):
+            # A tied search that has stuck tells nothing about the model.
+            if adequate(tied) and (tied.done or tied.misfit < STUCK * trial.misfit):
                 return self._keep(tied)
         if not trial.done:
             trial = self._keep(self.bench.fit(self.bench.effects(trial), trial, tied=trial.tied, patience=WHOLE))

@@ -127,7 +127,9 @@ def linearise(s: Smoother, at: Point) -> Blocks:
     right = jnp.concatenate([motion, base, tie], axis=1)
     gram = jnp.einsum("wir,wjr->wij", rows, rows)
     slope = jnp.einsum("wir,wr->wi", rows, right)
-    blocks = assemble(gram, slope, rows[:, :, -n:], tie, sharp, n, m + nodes, q, 0.5 * jnp.sum(right**2))
+    blocks = assemble(
+        gram, slope, rows[:, :, -n:], tie, sharp, jnp.diagonal(gram, axis1=1, axis2=2), n, m + nodes, q, 0.5 * jnp.sum(right**2)
+    )  # fmt: skip
 
     # As in a fit, a whisper of a prior holds what no sample touches.
     level = 1e-6 * jnp.max(w.input_weight, initial=0.0) ** 2

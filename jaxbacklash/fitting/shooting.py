@@ -72,7 +72,8 @@ class Blocks(eqx.Module):
     """Normal equations J^T J and gradient J^T r by blocks; B = n + m unknowns a window.
 
     ``diagonal`` (W, B, B); ``below`` (W, B, B) couples window w + 1 (rows) to window w (columns); ``border`` (W, B, q);
-    ``corner`` (q, q); ``slope`` (W, B) and ``slope_theta`` (q,) gradients; ``cost`` half the sum of squares.
+    ``corner`` (q, q); ``slope`` (W, B) and ``slope_theta`` (q,) gradients; ``cost`` half the sum of squares; ``seen`` (W, B)
+    and ``seen_theta`` (q,), the diagonal as far as it comes from samples and not from ties.
     """
 
     diagonal: Array
@@ -82,6 +83,8 @@ class Blocks(eqx.Module):
     slope: Array
     slope_theta: Array
     cost: Array
+    seen: Array = None
+    seen_theta: Array = None
 
 
 class Prediction(eqx.Module):
@@ -220,7 +223,7 @@ def linearise(problem: Problem, unknowns: Unknowns) -> tuple[Blocks, Prediction]
     lead = Window(_lead(problem), starts, following, local_coefficients(unknowns.coefficients))
     bare = eqx.tree_at(_lead, problem, replace=(None,) * len(_lead(problem)), is_leaf=lambda v: v is None)
     met = by_chunks(_meet, (bare, unknowns.theta), lead, problem.windows.used)
-    blocks = assemble(met.gram, met.slope, met.end_rows, met.tie, met.tie_weight, n, m, q, jnp.sum(met.cost))
+    blocks = assemble(met.gram, met.slope, met.end_rows, met.tie, met.tie_weight, met.seen, n, m, q, jnp.sum(met.cost))
     return _ridge(problem, unknowns, blocks, n), met.predicted
 
 
@@ -235,13 +238,15 @@ class Window(eqx.Module):
 
 class Met(eqx.Module):
     """Each window's own normal equations, in the unknowns it sees (U = n + m + 5 + q): ``gram`` (W, U, U), ``slope`` (W, U),
-    ``end_rows`` (W, U, n) weighted, ``tie`` and ``tie_weight`` (W, n), ``cost`` (W,)."""
+    ``end_rows`` (W, U, n) weighted, ``tie`` and ``tie_weight`` (W, n), ``seen`` (W, U) the samples' part of the diagonal of
+    ``gram``, ``cost`` (W,)."""
 
     gram: Array
     slope: Array
     end_rows: Array
     tie: Array
     tie_weight: Array
+    seen: Array
     cost: Array
     predicted: Prediction
 
@@ -263,6 +268,7 @@ def _meet(shared: tuple[Problem, Array], own: Window) -> Met:
     motion, base, tie = _residuals(w, predicted, own.following, tie_weight)
     weighted = jnp.concatenate([motion_rows * w.weight[:, None, :], end_rows * tie_weight[:, None, :]], axis=2)
     gram = jnp.einsum("wir,wjr->wij", weighted, weighted)
+    tied = jnp.sum(weighted[:, :, -n:] ** 2, axis=2)
     slope = jnp.einsum("wir,wr->wi", weighted, jnp.concatenate([motion, tie], axis=1))
     if own.local.shape[1]:
         # The input's own samples meet its coefficients alone.
@@ -272,16 +278,18 @@ def _meet(shared: tuple[Problem, Array], own: Window) -> Met:
         gram = gram + jnp.pad(by_itself, ((0, 0), (n, q), (n, q)))
         slope = slope + jnp.pad(jnp.einsum("wri,wr->wi", scaled, base), ((0, 0), (n, q)))
     cost = 0.5 * (jnp.sum(motion**2, axis=1) + jnp.sum(base**2, axis=1) + jnp.sum(tie**2, axis=1))
-    return Met(gram, slope, weighted[:, :, -n:], tie, tie_weight, cost, predicted)
+    seen = jnp.diagonal(gram, axis1=1, axis2=2) - tied
+    return Met(gram, slope, weighted[:, :, -n:], tie, tie_weight, seen, cost, predicted)
 
 
 def assemble(
-    gram: Array, slope: Array, end_rows: Array, tie: Array, tie_weight: Array, n: int, m: int, q: int, cost: Array
+    gram: Array, slope: Array, end_rows: Array, tie: Array, tie_weight: Array, seen: Array, n: int, m: int, q: int, cost: Array
 ) -> Blocks:
     """Blocks of the arrow from each window's own Gram matrix.
 
     ``gram`` (W, U, U) and ``slope`` (W, U) of the unknowns each window sees: its own n + m, those it shares with the next
-    window (the first ones after that window's start), and q parameters; ``end_rows`` (W, U, n) weighted tangents of its end.
+    window (the first ones after that window's start), and q parameters; ``end_rows`` (W, U, n) weighted tangents of its end;
+    ``seen`` (W, U) the samples' part of the diagonal.
     """
     size, own = n + m, slice(0, n + m)
     shared = slice(n + m, gram.shape[1] - q)
@@ -316,6 +324,8 @@ def assemble(
         gradient + shift(slope_next),
         jnp.sum(slope[:, theta], axis=0),
         cost,
+        seen[:, own] + shift(jnp.pad(seen[:, shared], ((0, 0), (n, rest)))),
+        jnp.sum(seen[:, theta], axis=0),
     )
 
 
@@ -331,4 +341,8 @@ def _ridge(problem: Problem, unknowns: Unknowns, blocks: Blocks, n: int) -> Bloc
     bare = jnp.diagonal(diagonal, axis1=1, axis2=2) == 0.0
     diagonal = diagonal + jnp.where(bare, 1.0, 0.0)[:, :, None] * jnp.eye(size)
     cost = blocks.cost + 0.5 * level * jnp.sum(change**2)
-    return Blocks(diagonal, blocks.below, blocks.border, blocks.corner, slope, blocks.slope_theta, cost)
+    # What no sample has seen is damped like what one has, so that the step stays finite.
+    seen = jnp.where(blocks.seen > 0.0, blocks.seen, 1.0)
+    return Blocks(
+        diagonal, blocks.below, blocks.border, blocks.corner, slope, blocks.slope_theta, cost, seen, blocks.seen_theta
+    )
