@@ -84,8 +84,15 @@ class Search:
             trial = self._keep(self.bench.fit(effects, before, tied=before.tied))
             if before.tied and trial.cost > before.cost:
                 # More can explain no less: the search has stuck, as dry friction may on a trajectory in one piece.
-                free = self.bench.fit(effects, before, tied=False)
+                free = self._keep(self.bench.fit(effects, before, tied=False))
                 self._keep(self.bench.fit(self.bench.effects(free), free, tied=True))
+        return self.known[key]
+
+    def loosened(self, trial: Trial) -> Trial:
+        """The same model with its windows free."""
+        key = (trial.names, False)
+        if key not in self.known:
+            self._keep(self.bench.fit(self.bench.effects(trial), trial, tied=False))
         return self.known[key]
 
     def without(self, before: Trial, name: str) -> Trial:
@@ -234,6 +241,10 @@ class Search:
             self.progress("judging absent effects" if not current.names else f"with {', '.join(sorted(current.names))}", 0.3)
             ranking = tuple(rank(self.bench, current))
             tried = self.attempts(current, ranking)
+            if current.tied and any(t.cost > current.cost for t in tried.values()):
+                # Where a trajectory in one piece sticks, this stage is judged on free windows.
+                current = self.loosened(current)
+                tried = self.attempts(current, ranking)
             evidence = {n: gain(current, t) for n, t in tried.items()}
             steps[-1] = replace(steps[-1], ranking=ranking, evidence=evidence)
             if not tried:
