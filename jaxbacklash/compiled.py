@@ -44,7 +44,7 @@ def kept_jit(function: Callable[..., Any]) -> Callable[..., Any]:
 
     Arguments are positional. A program is not kept, only jitted, where its arguments hold classes or functions of other
     packages (a user's own law may change without changing its name), and where it is called within another traced
-    function. A kept file that cannot be read is made anew.
+    function. A kept file that cannot be read is made anew. What the result's ``programs`` holds is what this process uses.
     """
     jitted = eqx.filter_jit(function)
     programs: dict[Key, Any] = {}
@@ -68,6 +68,7 @@ def kept_jit(function: Callable[..., Any]) -> Callable[..., Any]:
             programs[structure, fixed, kinds] = program
         return program(arrays) if isinstance(program, _Program) else program(*args)
 
+    call.programs = programs  # type: ignore[attr-defined]
     return call
 
 
