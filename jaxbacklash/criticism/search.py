@@ -10,7 +10,7 @@ from ..mechanics import AbstractEffect
 from ..parameters import specs, values, with_values
 from .candidates import Candidate, rank
 from .evidence import NOISE_FLOOR, UNEXPLAINED, demanded, excess, explained, gain, measures_only, significance
-from .workbench import Trial, Workbench, adequate, strengths
+from .workbench import PATIENCE, Trial, Workbench, adequate, strengths
 
 MOST_EFFECTS = 5
 """A model with more effects than this is no explanation any more."""
@@ -27,6 +27,8 @@ LITTLE, MUCH, MOST = 0.1, 0.25, 0.5
 internal states have not been tried; and if it is an effect of the measuring chain."""
 FAR, GLIMPSE = 2.0, 0.03
 """Where a model is this far off, a law with internal states must show this share in the quick look to be tried."""
+SURE = 4.0
+"""A gain predicted to be so many times what is demanded is no accident, so a fit that does not show it has stuck."""
 STUCK = 1.01
 """A tied fit that was not finished and misses by so much more than its free windows has stuck."""
 WHOLE = 60
@@ -81,12 +83,17 @@ class Search:
         key = (frozenset(present) | {candidate.name}, before.tied)
         if key not in self.known:
             effects = {**present, candidate.name: effect}
-            trial = self._keep(self.bench.fit(effects, before, tied=before.tied))
-            if before.tied and trial.cost > before.cost:
-                # More can explain no less: the search has stuck, as dry friction may on a trajectory in one piece.
-                free = self._keep(self.bench.fit(effects, before, tied=False))
-                self._keep(self.bench.fit(self.bench.effects(free), free, tied=True))
+            self._keep(self.joined(effects, before) if before.tied else self.bench.fit(effects, before))
         return self.known[key]
+
+    def joined(self, effects: dict[str, AbstractEffect], before: Trial, patience: int = PATIENCE) -> Trial:
+        """A tied fit from the windows of another model; where it sticks, as dry friction may, its windows are let go first."""
+        trial = self.bench.fit(effects, before, tied=True, patience=patience)
+        if trial.misfit < (STUCK if trial.done else 1.0) * before.misfit:
+            return trial
+        free = self._keep(self.bench.fit(effects, before, tied=False))
+        again = self.bench.fit(self.bench.effects(free), free, tied=True, patience=patience)
+        return min(trial, again, key=lambda t: t.cost)
 
     def loosened(self, trial: Trial) -> Trial:
         """The same model with its windows free."""
@@ -218,7 +225,7 @@ class Search:
         own = next((c.gain for c in ranking if c.name == name), 0.0)
         near = [c for c in ranking if c.name not in final.names and c.gain > CLOSE * own][:2]
         near = [c for c in near if c.name not in self.bench.laws[name].absorbs]
-        return simpler + [self.bench.fit({**kept, c.name: c.effect}, final, tied=True, patience=15) for c in near]
+        return simpler + [self._keep(self.joined({**kept, c.name: c.effect}, final)) for c in near]
 
     def simplified(self, final: Trial, name: str, other: str) -> Trial:
         """The model with a law reduced to a simpler one that it contains."""
@@ -241,10 +248,12 @@ class Search:
             self.progress("judging absent effects" if not current.names else f"with {', '.join(sorted(current.names))}", 0.3)
             ranking = tuple(rank(self.bench, current))
             tried = self.attempts(current, ranking)
-            if current.tied and any(t.cost > current.cost for t in tried.values()):
-                # Where a trajectory in one piece sticks, this stage is judged on free windows.
+            promised = {c.name for c in ranking if c.gain > SURE * demanded(self.bench)}
+            if current.tied and any(t.cost > current.cost for n, t in tried.items() if n in promised):
+                # A trajectory in one piece has stuck on the way to a clear gain: this stage is judged on free windows.
                 current = self.loosened(current)
                 tried = self.attempts(current, ranking)
+            tried = self.finished(current, tried)
             evidence = {n: gain(current, t) for n, t in tried.items()}
             steps[-1] = replace(steps[-1], ranking=ranking, evidence=evidence)
             if not tried:
@@ -268,6 +277,14 @@ class Search:
             self.progress(f"trying {c.name}", 0.4)
             tried[c.name] = self.add(current, c)
         return tried
+
+    def finished(self, current: Trial, tried: dict[str, Trial]) -> dict[str, Trial]:
+        """The same candidates, those fitted to the end that lie close to the best."""
+        lowest = min((t.criterion for t in tried.values()), default=0.0)
+        near = (1.0 - CLOSE) * (current.criterion - lowest)
+        close = [n for n, t in tried.items() if t.criterion - lowest <= near]
+        undecided = len(close) > 1
+        return {n: self.finish(t) if undecided and n in close and not t.done else t for n, t in tried.items()}
 
     def best(self, current: Trial, tried: dict[str, Trial]) -> str:
         """The simplest of the candidates that do as well as any: fewest parameters, acting before measuring only."""
