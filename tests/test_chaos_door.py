@@ -6,10 +6,13 @@ import math
 import numpy as np
 import pytest
 
+from jaxbacklash.records import read_series
+
 from .independent.chaotic import HENON
 from .report_samples import numbers
 from .test_cli import call as call  # the fixture that runs the command line
 from .test_cli import sentence
+from .test_timeseries import DT, swept
 
 
 def write(path, names, *columns):
@@ -46,6 +49,30 @@ def test_result_and_page(call, driven, tmp_path):
     page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
     assert page.count("<svg") >= 7
     assert "http" not in page.replace("http://www.w3.org", "")
+
+
+def test_a_drive_that_never_repeats_makes_the_answer_conditional(call, tmp_path):
+    x, z, exact = swept(0.055)
+    path = write(tmp_path / "sweep.csv", "t,x,z", DT * np.arange(x.size), x, z)
+    code, out, err = call("chaos", path, "--out", tmp_path / "out", "--json", "--no-clean")
+    assert (code, err) == (0, "")
+    found = json.loads(out)
+    assert found["verdict"] == "chaotic"
+    assert "under the same base motion separate" in found["verdict_text"]
+    assert found["lyapunov"]["conditional_on_drive"] is True
+    assert found["lyapunov"]["value"] == pytest.approx(exact, rel=0.25)
+    assert found["driven"]["two_motions"] == "separate"
+    assert all(map(math.isfinite, numbers(found)))
+    page = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert "Under the measured drive" in page
+
+
+def test_a_converted_channel_is_labelled_with_what_it_was_converted_to(tmp_path):
+    path = write(tmp_path / "degrees.csv", "t,z", 0.01 * np.arange(600), np.sin(np.arange(600.0)))
+    found = read_series(path, units={"z": "deg"})
+    assert found.unit == "rad"
+    assert np.ptp(found.values) == pytest.approx(2.0 * np.pi / 180.0, rel=1e-3)
+    assert read_series(path).unit == ""
 
 
 def test_text_without_a_drive(call, tmp_path):

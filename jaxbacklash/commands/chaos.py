@@ -6,12 +6,17 @@ import shlex
 import sys
 from pathlib import Path
 
+import numpy as np
+
 from .. import __version__
 from ..errors import BadInput
+from ..records import MeasuredSeries
 from ..report.chaos_report import chaos_report
 from ..report.chaos_result import chaos_json
 from ..timeseries import chaos
 from .common import Reading, json_text, out_folder, progress, write_text
+
+DRIVES = {"x": "base motion", "F": "force"}
 
 
 def run(
@@ -33,8 +38,9 @@ def run(
     with progress(as_json) as tell:
         try:
             found = chaos(
-                source.values, source.dt, drive=source.drive, surrogates=surrogates, count=count, clean=clean, seed=seed,
-                progress=tell,
+                source.values, source.dt, drive=source.drive, motion=_across(source),
+                drive_name=DRIVES.get(source.drive_name or "", "drive"),
+                surrogates=surrogates, count=count, clean=clean, seed=seed, progress=tell,
             )  # fmt: skip
         except BadInput as why:
             raise BadInput(f"{path}, channel {source.name}: {why}") from None
@@ -51,3 +57,10 @@ def run(
     print(found)
     if folder is not None:
         print(f"written: {folder}/result.json, report.html")
+
+
+def _across(source: MeasuredSeries) -> np.ndarray | None:
+    """The motion across the joint, where the channel is the link's own over a moving base."""
+    if source.drive is None or (source.name, source.drive_name) != ("y", "x"):
+        return None
+    return source.values - source.drive

@@ -13,7 +13,7 @@ from . import checks, time_axis
 from .checks import listed, number, wrong
 from .reader import _read_table
 from .resample import resampled
-from .units import factors
+from .units import base_unit, factors
 
 USUAL = ("z", "y", "T", "x", "F")
 """Channels looked for, in this order, when none is named."""
@@ -110,8 +110,7 @@ def read_series(
     if resample is not None and resample is not False:
         t, found = resampled(t, found, None if resample is True else float(resample), where)
     t = time_axis.uniform(t, where)
-    unit = units.get(name, "")
-    return MeasuredSeries(t, found[name], name, where, unit, found[driven] if driven else None, driven)
+    return MeasuredSeries(t, found[name], name, where, base_unit(units.get(name)), found[driven] if driven else None, driven)
 
 
 def _usual(known: Mapping[str, np.ndarray], columns: Mapping[str, str], where: str) -> str:

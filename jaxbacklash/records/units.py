@@ -21,6 +21,7 @@ FORCE = {"N": 1.0, "kN": 1e3, "lbf": 4.4482216152605, "kip": 4448.2216152605}
 TORQUE = {"N m": 1.0, "N mm": 1e-3, "kN m": 1e3, "lbf in": 4.4482216152605 * 0.0254}
 
 MOTION = ANGLE | LENGTH
+FAMILIES = (TIME, ANGLE, LENGTH, FORCE, TORQUE)
 UNITS: dict[str, dict[str, float]] = {
     "t": TIME,
     **dict.fromkeys(("x", "z", "y"), MOTION),
@@ -146,3 +147,11 @@ def factors(
         for name in present
         if name in units or name in scales
     }
+
+
+def base_unit(unit: str | None) -> str:
+    """The unit a channel has once it is converted: rad for deg, m for mm; empty for none."""
+    for family in FAMILIES:
+        if unit in family:
+            return next(name for name, factor in family.items() if factor == 1.0)
+    return ""

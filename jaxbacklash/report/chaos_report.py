@@ -13,6 +13,7 @@ from .figures_chaos import (
     correlation_sums,
     delay_choice,
     dimension_choice,
+    driven_growth,
     phase_plot,
     stretching_curves,
     surrogates_and_walk,
@@ -30,6 +31,7 @@ def chaos_panels(found: ChaosReport, source: MeasuredSeries) -> list[Panel]:
     return [
         Panel("The series", "The grey stretch above is what is drawn below.",
               to_svg(chaos_series(found, source.name, source.unit)), "series"),
+        *_driven(found, source),
         Panel("The state, one delay apart",
               "A thin, folded sheet is a sign of few degrees of freedom; a cloud is a sign of noise.",
               to_svg(phase_plot(found, source.unit)), "phase"),
@@ -48,7 +50,27 @@ def chaos_panels(found: ChaosReport, source: MeasuredSeries) -> list[Panel]:
     ]  # fmt: skip
 
 
+def _driven(found: ChaosReport, source: MeasuredSeries) -> list[Panel]:
+    one = found.driven
+    if one is None or one.value is None or one.error is None:
+        return []
+    word = {"separate": "grows", "meet": "dies away"}.get(one.word, "neither clearly grows nor clearly dies away")
+    said = f"Under the drive as it was measured, a small difference {word}."
+    if found.conditional:
+        said += " The verdict rests on this picture; the ones below look at the series as if nothing had driven it."
+    name = "z" if source.name == "y" else source.name
+    return [
+        Panel("Under the measured drive", said, to_svg(driven_growth(found, name, source.unit)), "driven",
+              "The acceleration of the motion is fitted by tables of position and velocity and by the drive, all over the "
+              "record, so no states need recur. On stretches it was not fitted to, the law misses the acceleration by "
+              f"{100 * one.error:.2g} %. Its slope tells how a small difference changes from moment to moment; the drive is the "
+              "same for both motions and drops out. Flat in the play and steep in contact is what parts them."),
+    ]  # fmt: skip
+
+
 def _parting(found: ChaosReport) -> str:
+    if found.conditional:
+        return "Under a drive that does not repeat these curves also hold how the drive changed; they decide nothing here."
     if found.lyapunov is None:
         return f"No exponent is given: {found.why_no_number}."
     if found.curve.region is None:

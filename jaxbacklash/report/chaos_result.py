@@ -35,6 +35,7 @@ def chaos_json(found: ChaosReport, source: MeasuredSeries, *, command_line: str 
             found.correlation.dimension, found.correlation.why, spread=finite(found.correlation.spread)
         ),
         "lyapunov": _lyapunov(found),
+        "driven": _driven(found),
         "stretching": _stretching(found),
         "prediction_error": None if found.raw_exponent is None else finite(found.raw_exponent.error),
         "surrogates": {
@@ -61,8 +62,12 @@ def choices(found: ChaosReport) -> list[tuple[str, str]]:
     if found.raw_exponent is not None:
         maps = ", ".join(f"{one.dimension} with {one.neighbours}" for one in (found.exponent or found.raw_exponent).maps)
         rows.append(("local maps", f"those that predict best out of sample; coordinates with neighbours: {maps}"))
+    if found.driven is not None and found.driven.value is not None:
+        cells = ", ".join(str(one) for one, _, _ in found.driven.used)
+        rows.append(("law of motion", f"tables of {cells} cells, those that predict best the stretches they were not fitted to"))
     if found.cleaned is not None:
         used = "the exponent is from the cleaned series" if found.uses_cleaned else "the exponent is from the series as measured"
+        used = "the exponent is not from it" if found.conditional else used
         gain = "cannot be told" if found.cleaned.gain_db is None else f"is about {found.cleaned.gain_db:.1f} dB"
         size = f"{100 * found.cleaned.noise:.2g} % of the signal's spread"
         rows.append(("noise reduction", f"noise of {size}; the gain of taking it off {gain}; {used}"))
@@ -117,13 +122,33 @@ def _lyapunov(found: ChaosReport) -> dict[str, Any]:
         "unit": "1/s",
         "per_period": None,
         "bit_per_s": None if value is None else value / math.log(2.0),
-        "method": "local maps (Sano and Sawada, 1985)",
-    }
+        "conditional_on_drive": found.conditional,
+        "method": "tangent of the measured law of motion under the measured drive" if found.conditional
+        else "local maps (Sano and Sawada, 1985)",
+    }  # fmt: skip
     if value is None:
         return entry | {"why": found.why_no_number}
     if found.drive_period is None:
         return entry | {"per_period_why": found.why_no_period}
     return entry | {"per_period": value * found.drive_period, "drive_period_s": found.drive_period}
+
+
+def _driven(found: ChaosReport) -> dict[str, Any]:
+    """Growth of small differences under the measured drive."""
+    one = found.driven
+    if one is None:
+        return {"value": None, "why": found.why_no_period, "unit": "1/s"}
+    if one.value is None or one.interval is None or one.second is None:
+        return {"value": None, "why": one.why, "unit": "1/s", "prediction_error": finite(one.error)}
+    return {
+        "value": one.value / found.dt, "ci95": [end / found.dt for end in one.interval], "unit": "1/s",
+        "second": one.second / found.dt, "two_motions": one.word, "prediction_error": finite(one.error),
+        "samples": one.samples, "first_sample": one.first,
+        "laws": [
+            {"cells": cells, "friction": friction, "prediction_error": finite(error), "value": value / found.dt}
+            for (cells, friction, error), value in zip(one.used, one.values)
+        ],
+    }  # fmt: skip
 
 
 def _stretching(found: ChaosReport) -> dict[str, Any]:

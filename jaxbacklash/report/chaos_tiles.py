@@ -14,8 +14,9 @@ def chaos_tiles(result: Mapping[str, Any]) -> list[dict[str, str]]:
     tiles = []
     if is_number(found.get("value")):
         ends = found.get("ci95") or []
-        rest = f"{short(ends[0])} to {short(ends[1])}; {short(found.get('bit_per_s'))} bit/s" if len(ends) == 2 else ""
-        tiles.append({"label": "largest Lyapunov exponent", "value": short(found["value"]), "unit": "1/s", "rest": rest})
+        rest = f"{_three(ends[0])} to {_three(ends[1])}; {_three(found.get('bit_per_s'))} bit/s" if len(ends) == 2 else ""
+        label = "exponent under this drive" if found.get("conditional_on_drive") else "largest Lyapunov exponent"
+        tiles.append({"label": label, "value": _three(found["value"]), "unit": "1/s", "rest": rest})
     else:
         tiles.append(
             {"label": "largest Lyapunov exponent", "value": "none", "unit": "", "rest": str(found.get("why") or "")}
@@ -42,6 +43,11 @@ def chaos_tiles(result: Mapping[str, Any]) -> list[dict[str, str]]:
         rest = f"against {tested.get('count')} {str(tested.get('kind')).upper()} surrogates"
         tiles.append({"label": "chance", "value": short(tested["p_value"]), "unit": "", "rest": rest})
     return tiles
+
+
+def _three(value: Any) -> str:
+    """Three digits, also of a number whose whole part has more."""
+    return short(float(f"{value:.3g}")) if is_number(value) else short(value)
 
 
 def chosen(result: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ..timeseries import ChaosReport
+from ..timeseries.driven import GROUP
 from .drawing import drawn_in_style, new_figure, readable_log
 from .style import GAP, HELDOUT, INK, MEASURED, MEDIUM, MODEL, SHORT, with_unit
 from .thinning import envelope
@@ -15,11 +16,18 @@ SWINGS = 25
 POINTS = 12000
 
 
+def _clock(seconds: float) -> tuple[float, str]:
+    """What to multiply seconds by, and the unit, so that so long a stretch has plain numbers on its axis."""
+    units = ((1.0, "s"), (1e3, "ms"), (1e6, "µs"), (1e9, "ns"))
+    return next((one for one in units if one[0] * seconds >= 1.0), units[-1])
+
+
 @drawn_in_style
 def chaos_series(found: ChaosReport, name: str, unit: str) -> Figure:
     """The whole series above, some swings of it below, cleaned where it was."""
     values = found.mean + found.deviation * found.series
-    t = found.dt * np.arange(values.size)
+    factor, clock = _clock(found.dt * values.size)
+    t = factor * found.dt * np.arange(values.size)
     figure = new_figure(MEDIUM)
     upper, lower = figure.subplots(2, 1, height_ratios=(1, 1.5))
     times, low, high = envelope(t, values, 900)
@@ -40,8 +48,8 @@ def chaos_series(found: ChaosReport, name: str, unit: str) -> Figure:
         lower.plot(at, cleaned, color=MODEL, lw=1.0, label="noise taken off")
     upper.axvspan(t[part][0], t[part][-1], color=GAP, alpha=0.35, lw=0)
     upper.set(xlim=(t[0], t[-1]), ylabel=with_unit(name, unit))
-    upper.set_title("the whole series, time in s")
-    lower.set(xlim=(t[part][0], t[part][-1]), xlabel="time [s]", ylabel=with_unit(name, unit))
+    upper.set_title(f"the whole series, time in {clock}")
+    lower.set(xlim=(t[part][0], t[part][-1]), xlabel=f"time [{clock}]", ylabel=with_unit(name, unit))
     lower.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, borderaxespad=0.2)
     return figure
 
@@ -97,7 +105,7 @@ def phase_plot(found: ChaosReport, unit: str) -> Figure:
         else:
             ax.plot(values[:-delay], values[delay:], ".", color=colour, ms=1.6, mew=0, rasterized=True)
         ax.set(xlabel=with_unit("now", unit), title=name)
-        ax.set_aspect("equal", adjustable="datalim")
+        ax.set_aspect("equal", adjustable="datalim" if len(both) > 1 else "box")
     axes[0].set_ylabel(with_unit(f"{delay} samples later", unit))
     return figure
 
@@ -108,7 +116,8 @@ def stretching_curves(found: ChaosReport) -> Figure:
     curve, dt = found.curve, found.dt
     figure = new_figure(MEDIUM)
     ax = figure.subplots()
-    times = curve.lags * dt
+    factor, clock = _clock(float(curve.lags[-1]) * dt)
+    times = factor * dt * curve.lags
     ax.plot(times, curve.kantz, color=MEASURED, lw=0.8, alpha=0.5)
     ax.plot(times, curve.smooth, color=MEASURED, lw=1.6, label="Kantz, averaged over a swing")
     ax.plot(times, curve.rosenstein, color=HELDOUT, lw=1.1, label="Rosenstein")
@@ -118,15 +127,40 @@ def stretching_curves(found: ChaosReport) -> Figure:
         ax.axvspan(times[part][0], times[part][-1], color=GAP, alpha=0.2, lw=0)
         line = curve.region.intercept + curve.region.slope * curve.lags[part]
         ax.plot(times[part], line, color=MODEL, lw=2.2, label=f"straight part, {curve.region.slope / dt:.3g} 1/s")
-    if found.lyapunov is not None and found.exponent is not None:
+    if found.lyapunov is not None and found.exponent is not None and not found.conditional:
         middle = curve.region.first if curve.region is not None else max(1, curve.lags.size // 20)
         start, top = float(curve.smooth[middle]), curve.plateau
         reach = (top - start) / max(found.exponent.value, 1e-300)
         at = np.array([curve.lags[middle], min(curve.lags[middle] + reach, curve.lags[-1])])
-        ax.plot(at * dt, start + found.exponent.value * (at - at[0]), color=INK, lw=1.0, ls=":",
+        ax.plot(factor * dt * at, start + found.exponent.value * (at - at[0]), color=INK, lw=1.0, ls=":",
                 label=f"local maps, {found.lyapunov:.3g} 1/s")  # fmt: skip
-    ax.set(xlabel="time [s]", ylabel="mean log distance", xlim=(0.0, times[-1]))
+    ax.set(xlabel=f"time [{clock}]", ylabel="mean log distance", xlim=(0.0, times[-1]))
     ax.legend(loc="lower right")
+    return figure
+
+
+@drawn_in_style
+def driven_growth(found: ChaosReport, name: str, unit: str) -> Figure:
+    """The law of motion that the record shows, and how a small difference grows along it under the measured drive."""
+    one, dt = found.driven, found.dt
+    assert one is not None
+    assert one.surface is not None
+    figure = new_figure(SHORT + 0.4)
+    left, right = figure.subplots(1, 2, width_ratios=(1, 1.35))
+    edges = one.middle + one.deviation * one.surface.edges
+    left.plot(edges, -one.deviation * one.surface.force / dt**2, ".-", color=MEASURED, ms=4)
+    left.axhline(0.0, color=INK, lw=0.5, ls="--")
+    left.set(xlabel=with_unit(name, unit), ylabel=f"force over inertia [{unit or name}/s²]", title="the law of motion")
+    factor, clock = _clock(dt * one.samples)
+    times = factor * dt * (one.first + GROUP * np.arange(one.rates.size + 1))
+    grown = np.concatenate([[0.0], np.cumsum(one.rates)])
+    right.plot(times, grown, color=MEASURED, lw=1.2, label="log of a small difference")
+    rate = (one.value or 0.0) / dt
+    reach = [0.0, rate * (times[-1] - times[0]) / factor]
+    right.plot(times[[0, -1]], reach, color=MODEL, lw=1.4, ls=":", label=f"{rate:.3g} 1/s")
+    right.axhline(0.0, color=INK, lw=0.5, ls="--")
+    right.set(xlabel=f"time [{clock}]", ylabel="log of its growth", xlim=(times[0], times[-1]), title="under the measured drive")
+    right.legend(loc="best")
     return figure
 
 

@@ -6,6 +6,8 @@ from .correlation import Correlation as Correlation
 from .correlation import correlation as correlation
 from .dimension import Dimension as Dimension
 from .dimension import embedding_dimension as embedding_dimension
+from .driven import Driven as Driven
+from .driven import driven_exponent as driven_exponent
 from .embedding import embed as embed
 from .exponent import Exponent as Exponent
 from .exponent import largest_exponent as largest_exponent

@@ -10,6 +10,7 @@ import numpy as np
 from ..errors import BadInput
 from .correlation import Correlation, correlation
 from .dimension import Dimension, embedding_dimension
+from .driven import Driven, driven_exponent
 from .exponent import Exponent, largest_exponent
 from .mutual_information import Delay, choose_delay
 from .noise_reduction import Cleaned, projective, simple
@@ -18,7 +19,7 @@ from .scales import mean_period
 from .stationarity import kept_company
 from .stretching import Stretching, stretching
 from .surrogates import KINDS, SurrogateTest, surrogate_test
-from .verdict import Verdict, judge
+from .verdict import STEADY, Verdict, judge, judge_driven
 from .zero_one import ZeroOne, zero_one
 
 SHORTEST = 500
@@ -36,7 +37,8 @@ class ChaosReport:
 
     Exponents are per sample inside ``exponent`` and ``raw_exponent``; the properties give them per second. ``series`` is the
     standardised series, ``cleaned`` its noise reduction (of the middle `CLEANED_SAMPLES` of a long series), which counts only
-    where ``uses_cleaned``. ``drive_period`` [s] is None, with ``why_no_period``, for a record without a drive.
+    where ``uses_cleaned``. ``drive_period`` [s] is None, with ``why_no_period``, for a record without a drive that repeats.
+    ``driven`` is the growth under the measured drive, None without one; where ``conditional``, verdict and exponent are its.
     """
 
     series: np.ndarray
@@ -62,27 +64,35 @@ class ChaosReport:
     why_no_number: str | None
     drive_period: float | None
     why_no_period: str | None
+    driven: Driven | None
+    conditional: bool
     seed: int
 
     @property
     def lyapunov(self) -> float | None:
         """Largest exponent [1/s], None where there is none to give (see ``why_no_number``)."""
-        return None if self.why_no_number or self.exponent is None else self.exponent.value / self.dt
+        if self.why_no_number:
+            return None
+        if self.conditional:
+            return None if self.driven is None or self.driven.value is None else self.driven.value / self.dt
+        return None if self.exponent is None else self.exponent.value / self.dt
 
     @property
     def interval(self) -> tuple[float, float] | None:
         """95 % interval of the largest exponent [1/s]."""
-        if self.lyapunov is None or self.exponent is None:
+        found = self.driven if self.conditional else self.exponent
+        if self.lyapunov is None or found is None or found.interval is None:
             return None
-        return self.exponent.interval[0] / self.dt, self.exponent.interval[1] / self.dt
+        return found.interval[0] / self.dt, found.interval[1] / self.dt
 
     def __str__(self) -> str:
         return text(self)
 
 
 def chaos(
-    series: np.ndarray, dt: float = 1.0, *, drive: np.ndarray | None = None, surrogates: str = "iaaft", count: int = 39,
-    clean: bool = True, seed: int = 0, progress: Tell | None = None,
+    series: np.ndarray, dt: float = 1.0, *, drive: np.ndarray | None = None, motion: np.ndarray | None = None,
+    drive_name: str = "drive", surrogates: str = "iaaft", count: int = 39, clean: bool = True, seed: int = 0,
+    progress: Tell | None = None,
 ) -> ChaosReport:  # fmt: skip
     """Is a measured series chaotic, and how fast do small differences grow?
 
@@ -90,7 +100,11 @@ def chaos(
     ----------
     series : (N,) evenly sampled, at least 500 samples, any unit
     dt : time between samples [s]
-    drive : (N,) what drives the system, if that was measured; its period then gives the exponent per period
+    drive : (N,) what drives the system, if that was measured. Where it repeats, its period gives the exponent per period; where
+        it does not, states never recur with the drive where it was, and verdict and exponent are conditional on the drive: do two
+        motions that start apart under the same drive part or meet? See `driven_exponent`
+    motion : (N,) what the force depends on, where that is not the series: z = y - x for a link's own motion y over a base x
+    drive_name : what the drive is called in sentences
     surrogates : "iaaft", "aaft" or "fourier"
     count : how many; with 39 the least p-value is 0.025
     clean : take noise off too, for the dimension and a less biased exponent; the verdict never rests on it alone
@@ -128,7 +142,17 @@ def chaos(
     walk = zero_one(series, max(1, delay.samples), rng)
     raw_curve = stretching(series, m, delay.samples, theiler, period, rng)
     company = kept_company(series, m, delay.samples, theiler, rng)
+    drive_period, why = _drive_period(drive, series.size, dt)
+    driven = None
+    if drive is not None:
+        tell("fitting the law of motion", 0.56)
+        across = mean + deviation * series if motion is None else np.asarray(motion, dtype=float)
+        driven = driven_exponent(across, np.asarray(drive, dtype=float), period, rng)
     verdict = judge(raw_exponent, tested, raw_curve, walk, series.size, period, company)
+    recurs = drive_period is not None and company <= STEADY and verdict.word != "undecided"
+    conditional = driven is not None and driven.value is not None and not recurs
+    if conditional and driven is not None:
+        verdict = judge_driven(driven, dt, drive_name)
 
     cleaned = by_average = cleaned_dimension = None
     working, exponent, curve = series, raw_exponent, raw_curve
@@ -139,7 +163,7 @@ def chaos(
         uses_cleaned = cleaned.gain_db is not None and cleaned.gain_db >= WORTH_IT_DB
         tell("choosing the dimension", 0.80)
         cleaned_dimension = embedding_dimension(cleaned.series, delay.samples, theiler, rng)
-        if uses_cleaned and verdict.word in ("chaotic", "undecided"):
+        if uses_cleaned and not conditional and verdict.word in ("chaotic", "undecided"):
             working = (cleaned.series - cleaned.series.mean()) / cleaned.series.std()
             tell("fitting local maps", 0.84)
             exponent = largest_exponent(working, delay.samples, theiler, rng) or raw_exponent
@@ -148,11 +172,13 @@ def chaos(
     highest = range(2, min(m + 3, 8) + 1)
     raw_correlation = correlation(series, highest, delay.samples, theiler, rng)
     found = correlation(working, highest, delay.samples, theiler, rng) if uses_cleaned else raw_correlation
-    drive_period, why = _drive_period(drive, series.size, dt)
+    none = None if conditional else _why_none(verdict, exponent, curve)
+    if none and driven is not None and driven.why and drive_period is None:
+        none += f"; nor is there one under the measured {drive_name}: {driven.why}"
     return ChaosReport(
         series, dt, mean, deviation, period, delay, theiler, raw_dimension, cleaned_dimension, cleaned, by_average, uses_cleaned,
-        raw_exponent, exponent, curve, found, raw_correlation, tested, walk, verdict, _why_none(verdict, exponent, curve),
-        drive_period, why, seed,
+        raw_exponent, exponent, curve, found, raw_correlation, tested, walk, verdict, none,
+        drive_period, why, driven, conditional, seed,
     )  # fmt: skip
 
 

@@ -14,7 +14,10 @@ def text(found: ChaosReport) -> str:
     dt, raw = found.dt, found.raw_dimension
     lines = [f"{found.verdict.word}: {found.verdict.text}", ""]
     lines.append(_exponent(found))
-    if found.lyapunov is not None and found.curve.slope is not None:
+    lines += _driven(found)
+    if found.conditional:
+        lines.append("  what follows looks at the series alone, as if nothing had driven it")
+    elif found.lyapunov is not None and found.curve.slope is not None:
         low, high = found.curve.interval or (math.nan, math.nan)
         lines.append(
             f"  from stretching curves alone    {found.curve.slope / dt:.4g} 1/s, {low / dt:.4g} to {high / dt:.4g}"
@@ -60,6 +63,23 @@ def _exponent(found: ChaosReport) -> str:
         f"  largest Lyapunov exponent       {value:.4g} 1/s, 95 % interval {interval[0]:.4g} to {interval[1]:.4g}, "
         f"{value / math.log(2.0):.4g} bit/s{per}"
     )
+
+
+def _driven(found: ChaosReport) -> list[str]:
+    """The growth under the measured drive, or why there is none."""
+    one = found.driven
+    if one is None:
+        return []
+    if one.value is None or one.interval is None or one.second is None or one.error is None:
+        return [f"  under the measured drive        none: {one.why}"]
+    low, high = (end / found.dt for end in one.interval)
+    cells = ", ".join(str(size) for size, _, _ in one.used)
+    told = f"  under the measured drive        {one.value / found.dt:.4g} 1/s, {low:.4g} to {high:.4g}"
+    return [
+        "  how                             tangent of the measured law along the record" if found.conditional else told,
+        f"  its second exponent             {one.second / found.dt:.4g} 1/s; together they are the rate at which volumes shrink",
+        f"  law of motion                   tables of {cells} cells; acceleration missed by {100 * one.error:.2g} %",
+    ]
 
 
 def _or_none(value: int | None) -> str:

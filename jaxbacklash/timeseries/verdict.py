@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from .driven import Driven
 from .exponent import Exponent
 from .stretching import Stretching
 from .surrogates import SurrogateTest
@@ -88,3 +89,30 @@ def judge(
             "look like this.",
         )
     return Verdict("undecided", "Small differences may grow, but too little for this record to tell; a longer one may.")
+
+
+def judge_driven(found: Driven, dt: float, drive: str) -> Verdict:
+    """The verdict on a motion whose drive was measured and need not repeat: chaotic where two motions under it part, regular
+    where they meet; undecided where the interval holds zero or a difference changes by less than e^10 over the record.
+
+    Parameters
+    ----------
+    found : with an exponent
+    dt : time between samples [s]
+    drive : what it is called, such as "base motion"
+    """
+    assert found.value is not None
+    assert found.stderr is not None
+    seconds, rate = found.samples * dt, abs(found.value) / dt
+    same = f"Two links that start apart under the same {drive}"
+    fact = f"by a factor of e every {1.0 / max(rate, 1e-300):.2g} s over these {seconds:.3g} s"
+    only = f"The exponent is conditional on this very {drive}: another one has another."
+    if found.word == "separate":
+        return Verdict("chaotic", f"{same} separate, {fact}. {only}")
+    if found.word == "meet":
+        return Verdict("regular", f"{same} come together, {fact}. {only}")
+    return Verdict(
+        "undecided",
+        f"{same} neither clearly separate nor clearly come together: over these {seconds:.3g} s a difference changes by about "
+        f"e^{found.value * found.samples:.2g}, with an error of e^{found.stderr * found.samples:.2g}. {only}",
+    )
