@@ -65,7 +65,10 @@ def _unit() -> float:
 
 PEERS: dict[str, Callable[..., Track | None]] = {
     "scipy hilbert, differences": lambda t, v, grid: scipy_hilbert(t, v),
+    "scipy hilbert, low-passed 0.5 %": lambda t, v, grid: scipy_hilbert(t, v, 0.005),
     "scipy hilbert, low-passed 1 %": lambda t, v, grid: scipy_hilbert(t, v, 0.01),
+    "scipy hilbert, low-passed 2 %": lambda t, v, grid: scipy_hilbert(t, v, 0.02),
     "PyWavelets, column maximum": pywavelets,
+    "PyWavelets, 4 times as long": lambda t, v, grid: pywavelets(t, v, grid, "cmor6.0-1.0"),
     "ssqueezepy, its ridge": lambda t, v, grid: ssqueezed(t, v),
 }

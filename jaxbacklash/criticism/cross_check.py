@@ -80,8 +80,9 @@ def cross_check(fit: Fit) -> CrossCheck:
         return _silent("neither the fit nor the skeletons tell a play and a stiffness to compare", found)
     if not apart:
         names = " and ".join(METHODS[m.method] for m in judges)
-        agree = f"{names[:1].upper()}{names[1:]}, independent of the fit, agree with its play and stiffness."
-        return CrossCheck(found, True, agree)
+        agree = f"{names[:1].upper()}{names[1:]}, independent of the fit, agree with its play and stiffness"
+        missing = _left_out(found)
+        return CrossCheck(found, True, f"{agree}, with errors that allow for this: {missing}." if missing else f"{agree}.")
     return CrossCheck(found, False, _broken(fit, found, tuple(apart)), "", tuple(apart))
 
 
@@ -105,8 +106,12 @@ def _broken(fit: Fit, found: Skeletons, apart: tuple[tuple[str, str, float], ...
     method, name, distance = max(apart, key=lambda entry: entry[2])
     said = f"The {METHODS[method]} tells another {name} than the fit, by {distance:.1f} standard errors"
     drifting = next((s for m in found.methods for s in m.warnings if s.startswith("large amplitudes")), "")
+    missing = _left_out(found)
     if not fit.adequate:
-        return f"{said}: the model misses something, and each method takes what is missing for play and stiffness in its own way."
+        own = "each method takes what is missing for play and stiffness in its own way"
+        return f"{said}: the model misses something, and {own}{'; ' + missing if missing else ''}."
+    if missing:
+        return f"{said}; {missing}."
     if drifting:
         return f"{said}; {drifting}."
     hidden = sorted(name for name, effect in fit.system.effects.items() if effect.states)
@@ -120,6 +125,12 @@ def _broken(fit: Fit, found: Skeletons, apart: tuple[tuple[str, str, float], ...
     if masked > 0.5:
         return f"{said}: {100 * masked:.0f} % of the record had to be masked, so the skeleton may not be typical of the whole."
     return f"{said}, though the model explains the record: the skeleton's assumption of one slow oscillation has broken."
+
+
+def _left_out(found: Skeletons) -> str:
+    """The skeletons' own sentence about a torque that they were not told of, without the advice that is meant for them alone."""
+    said = next((sentence for sentence in found.warnings if "was left out" in sentence), "")
+    return said.split(";")[0]
 
 
 def _loads(fit: Fit) -> np.ndarray | None:

@@ -5,6 +5,7 @@ from .analytic import analytic as analytic
 from .analytic import carrier as carrier
 from .analytic import denoised as denoised
 from .analytic import low_passed as low_passed
+from .bandwidth import highest_frequency as highest_frequency
 from .bump import Bump as Bump
 from .cycles import CycleSpline as CycleSpline
 from .cycles import SlowCurve as SlowCurve

@@ -20,6 +20,8 @@ REACH = 4.5
 """Standard deviations of the Gaussian at which an atom is cut off: 4e-5 of its peak."""
 CONE = 3.5
 """Cone of influence: an atom whose centre lies closer to an end than so many standard deviations is masked."""
+PER_CYCLE = 32
+"""Samples a cycle, at least, that an atom sees: of a faster record it sees means over 2, 4, 8, ... samples."""
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,7 @@ def scalogram(
     dt = (t[-1] - t[0]) / (t.size - 1)
     stride = max(1, -(-t.size // columns))
     reach = -(-int(np.ceil(REACH * float(wavelet.width(frequencies[0])) / dt)) // stride) * stride
-    step = max(stride, max(block - 2 * reach, block // 4) // stride * stride)
+    step = max(stride, max(block - 2 * reach, block // 4, reach) // stride * stride)
     out = np.zeros((frequencies.size, -(-t.size // stride)), complex)
     for begin in range(0, t.size, step):
         length = min(step, t.size - begin)
@@ -102,7 +104,9 @@ class Atoms:
 
     ``of(u, n)`` is :math:`\langle u^{(n)}, \psi_k \rangle`, with the derivatives carried by the atom (integration by parts):
     no sample is ever differenced, and a linear equation of motion holds between these numbers exactly, however fast
-    amplitude and frequency change.
+    amplitude and frequency change. An atom that is slow against the sample rate sees means over so many samples that
+    `PER_CYCLE` of them or a few more make a cycle; a mean is linear, too, so the equation still holds between the amplitudes.
+    An atom then costs the same memory at any frequency, at any sample rate and in a record of any length.
 
     Parameters
     ----------
@@ -113,24 +117,51 @@ class Atoms:
     def __init__(self, t: np.ndarray, centres: np.ndarray, frequencies: np.ndarray, wavelet: Morlet) -> None:
         dt = (t[-1] - t[0]) / (t.size - 1)
         widths = wavelet.width(frequencies)
-        first = np.maximum(np.ceil((centres - REACH * widths - t[0]) / dt).astype(int), 0)
-        last = np.minimum(np.floor((centres + REACH * widths - t[0]) / dt).astype(int), t.size - 1)
-        sizes = last - first + 1
-        ends = np.cumsum(sizes)
-        row = np.repeat(np.arange(centres.size), sizes)
-        column = np.arange(ends[-1]) - np.repeat(ends - sizes, sizes) + np.repeat(first, sizes)
-        s, w = widths[row], 2.0 * np.pi * frequencies[row]
-        tau = t[0] + dt * column - centres[row]
-        values = np.exp(-0.5 * (tau / s) ** 2 - 1j * w * tau)
-        values *= 2.0 * dt / (s * np.sqrt(2.0 * np.pi))
-        slope = tau / s**2 + 1j * w
-        shape, pointers = (centres.size, t.size), np.concatenate([[0], ends])
-        self._orders = [
-            sparse.csr_array((data, column, pointers), shape=shape)
-            for data in (values, values * slope, values * (slope**2 - 1.0 / s**2))
-        ]
         self.complete = np.minimum(centres - t[0], t[-1] - centres) > CONE * widths
+        halvings = np.floor(np.log2(1.0 / (PER_CYCLE * dt * frequencies)))
+        levels = np.clip(halvings, 0, int(np.log2(t.size)) - 3).astype(int)
+        self._points = centres.size
+        self._levels: list[tuple[int, np.ndarray, list[sparse.csr_array]]] = []
+        for level in np.unique(levels):
+            rows, count = np.flatnonzero(levels == level), t.size >> level
+            first, spacing = t[0] + 0.5 * dt * ((1 << level) - 1), dt * (1 << level)
+            # A mean over a stretch lowers a sine; the atom makes up for it, so that amplitudes do not depend on the level.
+            gain = np.sinc(frequencies[rows] * dt) / np.sinc(frequencies[rows] * spacing)
+            orders = _atoms(first, spacing, count, centres[rows], frequencies[rows], widths[rows], gain)
+            self._levels.append((int(level), rows, orders))
 
     def of(self, values: np.ndarray, order: int = 0) -> np.ndarray:
         """Complex amplitudes (M,) of the signal (N,) or of its first or second derivative."""
-        return self._orders[order] @ values
+        out, at = np.zeros(self._points, complex), 0
+        for level, rows, orders in self._levels:
+            for _ in range(level - at):
+                values = 0.5 * (values[: values.size // 2 * 2 : 2] + values[1::2])
+            at = level
+            out[rows] = orders[order] @ values
+        return out
+
+
+def _atoms(
+    t0: float,
+    dt: float,
+    count: int,
+    centres: np.ndarray,
+    frequencies: np.ndarray,
+    widths: np.ndarray,
+    gain: np.ndarray,
+) -> list[sparse.csr_array]:
+    """Matrices (M, count) that make amplitudes of means over dt of a signal, of its first and of its second derivative."""
+    first = np.clip(np.ceil((centres - REACH * widths - t0) / dt).astype(int), 0, count - 1)
+    last = np.clip(np.floor((centres + REACH * widths - t0) / dt).astype(int), 0, count - 1)
+    sizes = last - first + 1
+    ends = np.cumsum(sizes)
+    row = np.repeat(np.arange(centres.size), sizes)
+    column = (np.arange(ends[-1]) - np.repeat(ends - sizes, sizes) + np.repeat(first, sizes)).astype(np.int32)
+    s, w = widths[row], 2.0 * np.pi * frequencies[row]
+    tau = t0 + dt * column - centres[row]
+    values = np.exp(-0.5 * (tau / s) ** 2 - 1j * w * tau)
+    values *= 2.0 * dt * gain[row] / (s * np.sqrt(2.0 * np.pi))
+    slope = tau / s**2 + 1j * w
+    shape, pointers = (centres.size, count), np.concatenate([[0], ends]).astype(np.int32)
+    every = (values, values * slope, values * (slope**2 - 1.0 / s**2))
+    return [sparse.csr_array((data, column, pointers), shape=shape) for data in every]

@@ -17,6 +17,8 @@ from scipy.linalg import cho_solve_banded, cholesky_banded
 DEGREE = 5
 NEGLIGIBLE = 1e-6
 """Share of a signal's size below which a misfit of the spline does not count."""
+KEPT = 200_000
+"""Samples up to which factored equations are kept for the next signal: those of longer records would fill the memory."""
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,8 @@ def fit_spline(t: np.ndarray, values: np.ndarray, t0: float, spacing: float) -> 
     spacing : distance of the knots [s]
     """
     dt = (t[-1] - t[0]) / (t.size - 1)
-    design, transposed, factor = _least_squares(t.size, round((t[0] - t0) / dt, 6), round(spacing / dt, 9))
+    factored = _least_squares if t.size <= KEPT else _least_squares.__wrapped__
+    design, transposed, factor = factored(t.size, round((t[0] - t0) / dt, 6), round(spacing / dt, 9))
     count = design.shape[1]
     coefficients = cho_solve_banded((factor, False), transposed @ values)
     residual = values - design @ coefficients

@@ -46,9 +46,12 @@ def free_play_frequency(peak: np.ndarray | float, half_play: float, omega: float
 def axis_crossing(amplitude: np.ndarray, force: np.ndarray) -> tuple[float, float]:
     """The paper's regression: slope of a straight line through the restoring force, and where it cuts the axis.
 
+    The paper does not say through which points its line goes. Through large amplitudes, where the curve looks straight, it runs
+    near the asymptote; through all of them it is flatter, and its crossing lower: near the half play by chance, or below it.
+
     Parameters
     ----------
-    amplitude, force : the skeleton (3.7), shape (M,)
+    amplitude, force : the skeleton (3.7) or the part of it that the line is to follow, shape (M,)
 
     Returns
     -------

@@ -10,11 +10,12 @@ import numpy as np
 from ..errors import BadInput
 from ..parameters import unit_text
 from ..records import Record
-from ..signals import choose_intervals, fit_spline
+from ..signals import choose_intervals, fit_spline, highest_frequency
 from . import masks
 from .fundamental import Fundamental, hilbert_fundamental, wavelet_fundamental
 from .inversion import Inversion, Terms, invert
 from .modal import modal
+from .omitted import Omitted, omitted, sentence
 from .result import NAMES, Skeleton, Skeletons, Value
 
 FINEST = 100.0
@@ -111,7 +112,7 @@ def _read(record: Record, inertia: float | None, gravity: float, load: np.ndarra
     driven = record.kind != "free_decay"
     signals = [z, y, torque, {"base_motion": x, "force": force}.get(record.kind, z)]
     samples = record.samples if driven else _until_quiet(z)
-    fastest = max(_fastest(values, record.dt) for values in (z, signals[3]))
+    fastest = max(highest_frequency(values, record.dt, 0.99) for values in (z, signals[3]))
     group = max(1, int(record.rate_hz / (FINEST * max(fastest, 1e-9))))
     whole = samples // group * group
     t, z, y, torque, pace = (v[:whole].reshape(-1, group).mean(axis=1) for v in (record.t, *signals))
@@ -125,14 +126,6 @@ def _until_quiet(z: np.ndarray) -> int:
     """Samples of a decay until it stays close to where it ends."""
     away = np.abs(z - np.median(z[-max(8, z.size // 50) :]))
     return max(16, int(np.flatnonzero(away > QUIET * np.max(away))[-1]) + 1)
-
-
-def _fastest(values: np.ndarray, dt: float) -> float:
-    """Frequency [Hz] below which 99 % of the power of the signal's rate lie."""
-    power = np.abs(np.fft.rfft(values - np.mean(values))) ** 2
-    frequencies = np.fft.rfftfreq(values.size, dt)
-    share = np.cumsum(power * frequencies**2)
-    return float(frequencies[np.searchsorted(share, 0.99 * share[-1])]) if share[-1] > 0.0 else 0.0
 
 
 def _denoise(t: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, float, float]:
@@ -186,7 +179,9 @@ def _method(
     if last is None:
         return _empty(base, "z touches the edges of the play in too few cycles", units)
     final = _with_allowance(last, terms, motion, keep, inertia)
-    return _judged(base, final, motion, inertia, units)
+    link = motion.y - motion.z + motion.smooth
+    missed = omitted(terms, keep, last, link, inertia=inertia, stderr=final.stderr)
+    return _judged(base, _doubted(final, missed), missed, motion, inertia, units)
 
 
 def _impure(along: Fundamental, motion: _Motion, beside: Fundamental | None) -> tuple[np.ndarray, np.ndarray]:
@@ -234,15 +229,23 @@ def _with_allowance(found: Inversion, terms: Terms, motion: _Motion, keep: np.nd
             bias = (raw.values - values) * motion.kept_noise / max(1.0 - motion.kept_noise, 0.1)
             values = values - bias
             shifts.append(bias)
-    # The joint's three numbers should not care which amplitudes told them.
-    shifts.append(0.5 * np.where(np.abs(found.drift) > DRIFTED * found.drift_stderr, found.drift, 0.0))
     shifts.append(FLOOR * np.abs(values))
     for shift in shifts:
         variance += np.diag(shift**2)
     return replace(found, values=values, covariance=variance)
 
 
-def _judged(base: Skeleton, found: Inversion, motion: _Motion, inertia: float | None, units: list[str]) -> Skeleton:
+def _doubted(found: Inversion, missed: Omitted | None) -> Inversion:
+    """Errors widened where the model is seen to be wrong: by what a missing torque would move, and by half of what the joint's
+    numbers differ between small amplitudes and large, since they should not care which amplitudes told them."""
+    drift = 0.5 * np.where(np.abs(found.drift) > DRIFTED * found.drift_stderr, found.drift, 0.0)
+    shift = np.zeros(drift.size) if missed is None else missed.shift
+    return replace(found, covariance=found.covariance + np.diag(drift**2 + shift**2))
+
+
+def _judged(
+    base: Skeleton, found: Inversion, missed: Omitted | None, motion: _Motion, inertia: float | None, units: list[str]
+) -> Skeleton:
     """Values in words of the interface: total play instead of half, None where a value would mislead."""
     factors = (2.0, 1.0, 1.0, 1.0)
     names = (*NAMES, "inertia") if inertia is None else NAMES
@@ -264,6 +267,8 @@ def _judged(base: Skeleton, found: Inversion, motion: _Motion, inertia: float | 
     if motion.noise > LOUD * found.values[0]:
         share = motion.noise / found.values[0]
         warnings.append(f"the noise of z is {100 * share:.0f} % of the half play: its edges are blurred, trust the play less")
+    if missed is not None:
+        warnings.append(sentence(missed, NAMES, found.values, inertia or (1.0 if len(names) == 3 else found.values[3])))
     drifted = np.abs(found.drift) > DRIFTED * found.drift_stderr
     if np.any(drifted[:3]):
         worst = int(np.argmax(np.abs(found.drift[:3]) / np.maximum(found.drift_stderr[:3], 1e-300)))
@@ -316,6 +321,6 @@ def _together(hilbert: Skeleton, wavelet: Skeleton) -> tuple[str, ...]:
     """Both methods' warnings, those about the same thing once, in the words of the method that comes first."""
     kinds = {mask.sentence: mask.name for skeleton in (hilbert, wavelet) for mask in skeleton.masks if mask.sentence}
     told: dict[str, str] = {}
-    for sentence in (*wavelet.warnings, *hilbert.warnings):
-        told.setdefault(kinds.get(sentence, " ".join(sentence.split()[:2])), sentence)
+    for warning in (*wavelet.warnings, *hilbert.warnings):
+        told.setdefault(kinds.get(warning, " ".join(warning.split()[:2])), warning)
     return tuple(told.values())

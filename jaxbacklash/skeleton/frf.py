@@ -3,8 +3,17 @@ r"""Frequency response at the edge of the play: preload the joint to one side, s
 With the link resting on one contact the joint is linear, and :math:`H = Y/F = 1/(k - J\omega^2 + j c\,\omega)`. H1 divides by the
 spectrum of the force and is low where the force is noisy; H2 divides the spectrum of the motion and is high where the
 motion is; their ratio is the coherence. The inertia is the mass line, as the paper reads it from its Figure 11: above the
-mode :math:`-\omega^2 H \to 1/J`. All three numbers come from one weighted regression of
-:math:`1 = (k - J\omega^2 + j c\,\omega) H` over the lines that are coherent.
+mode :math:`-\omega^2 H \to 1/J`.
+
+H1 and H2 of averaged, windowed stretches show the mode and tell which lines are coherent and how noisy, but a window
+smooths a resonance, by percents of the damping after a hammer. So the numbers come from the spectra of the whole record,
+without a window, where
+
+.. math:: Y = \frac{F + T_0 + T_1 \omega + T_2 \omega^2}{k - J\omega^2 + j c\,\omega} + \text{noise},
+
+T being what the record's start and end leave (Pintelon and Schoukens, System Identification, 2012, section 6.3: exact where the
+samples hold all of the motion, that is, where an anti-aliasing filter did its work). Least squares in Y, with the noise as
+weight, is not biased by that noise; a regression of H is.
 """
 
 from __future__ import annotations
@@ -12,6 +21,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import optimize
 
 from ..errors import BadInput, NoAnswer
 from ..records import Record
@@ -44,6 +54,9 @@ def frequency_response(
     record: Record, *, segment: float | None = None, band: tuple[float, float] | None = None, translational: bool = False
 ) -> Response:
     """Natural frequency, damping and inertia from a force-driven record of the preloaded joint.
+
+    The force is taken to be exact: noise on it makes inertia and stiffness high, as it makes H1 low, by its share of the force's
+    power. A hammer must strike softly enough, or the sample rate be high enough, that the samples hold the whole stroke.
 
     Parameters
     ----------
@@ -87,28 +100,66 @@ def frequency_response(
     if used.sum() < FEWEST_LINES:
         raise NoAnswer(f"{where}: only {used.sum()} lines are coherent beyond {COHERENT:g}, wanted {FEWEST_LINES}")
     averages = max(2.0, 1.8 * record.samples / each)
-    values = _mode(frequency[used], h1[used], coherence[used], averages, where, translational)
+    start = _regression(frequency[used], h1[used], coherence[used], averages, where)
+    # Averages of so few are coherent by chance: the noise is a little more than 1 - coherence tells.
+    noise = of_motion * np.maximum(1.0 - coherence, 1e-9) * averages / (averages - 1.0)
+    lines = np.fft.rfftfreq(record.samples, record.dt)
+    inside = np.interp(lines, frequency, used.astype(float)) > 0.5
+    push, answer = (np.fft.rfft(v - np.mean(v))[inside] for v in (force, motion))
+    weight = 1.0 / np.sqrt(np.interp(lines[inside], frequency, noise))
+    values = _mode(2.0 * np.pi * lines[inside], push, answer, weight, start, translational)
+    natural = values["natural_frequency"].value or 0.0
+    if not frequency[used][0] < natural < frequency[used][-1]:
+        raise NoAnswer(f"{where}: the coherent lines hold no resonance; wanted a joint that rests on one contact")
     return Response(frequency, h1, h2, coherence, used, values)
 
 
-def _mode(
-    frequency: np.ndarray, h: np.ndarray, coherence: np.ndarray, averages: float, where: str, translational: bool
-) -> dict[str, Value]:
-    """Stiffness, damping and inertia by regression, and what follows from them with first-order errors."""
+def _regression(frequency: np.ndarray, h: np.ndarray, coherence: np.ndarray, averages: float, where: str) -> np.ndarray:
+    """Stiffness, damping and inertia from 1 = (k - J w^2 + j c w) H, (3,): good to percents, where the search starts."""
     omega = 2.0 * np.pi * frequency
     # A line's relative error is sqrt((1 - coherence) / (2 coherence averages)): Bendat and Piersol.
     relative = np.sqrt(np.maximum(1.0 - coherence, 1e-6) / (2.0 * coherence * averages))
     columns = np.stack([h, 1j * omega * h, -(omega**2) * h], axis=1) / relative[:, None]
     matrix, right = np.concatenate([columns.real, columns.imag]), np.concatenate([1.0 / relative, 0.0 * omega])
     scale = np.linalg.norm(matrix, axis=0)
-    solution = np.linalg.lstsq(matrix / scale, right, rcond=None)[0]
-    residual = right - matrix / scale @ solution
-    excess = max(1.0, float(residual @ residual) / max(residual.size - 3, 1))
-    covariance = excess * np.linalg.inv((matrix / scale).T @ (matrix / scale)) / np.outer(scale, scale)
-    k, c, j = solution / scale
-    if k <= 0.0 or j <= 0.0 or not frequency[0] < np.sqrt(k / j) / (2.0 * np.pi) < frequency[-1]:
+    k, c, j = np.linalg.lstsq(matrix / scale, right, rcond=None)[0] / scale
+    if k <= 0.0 or j <= 0.0:
         raise NoAnswer(f"{where}: the coherent lines hold no resonance; wanted a joint that rests on one contact")
-    natural, ratio = np.sqrt(k / j) / (2.0 * np.pi), c / (2.0 * np.sqrt(k * j))
+    return np.array([k, c if c > 0.0 else 0.02 * np.sqrt(k * j), j])
+
+
+def _mode(
+    omega: np.ndarray, force: np.ndarray, motion: np.ndarray, weight: np.ndarray, start: np.ndarray, translational: bool
+) -> dict[str, Value]:
+    """Stiffness, damping and inertia by least squares in the motion's spectrum, and what follows with first-order errors.
+
+    Errors are those of White (Econometrica 48, 1980): they ask the residuals how large they are, not the weights.
+    """
+    unit = omega / omega[-1]
+    ends = np.stack([unit**power for power in range(3)], axis=1).astype(complex)
+    scale = np.concatenate([start, np.full(6, float(np.sqrt(np.mean(np.abs(force) ** 2))))])
+
+    def model(of: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What the model makes of the force, and the slopes of that in the scaled parameters."""
+        k, c, j, *t = of * scale
+        pushed, below = force + ends @ (np.array(t[:3]) + 1j * np.array(t[3:])), k - j * omega**2 + 1j * c * omega
+        y = pushed / below
+        slopes = [-y / below, -1j * omega * y / below, omega**2 * y / below]
+        slopes += [*(ends / below[:, None]).T, *(1j * ends / below[:, None]).T]
+        return y, np.stack(slopes, axis=1) * scale
+
+    def real(values: np.ndarray) -> np.ndarray:
+        weighed = values * (weight if values.ndim == 1 else weight[:, None])
+        return np.concatenate([weighed.real, weighed.imag])
+
+    first = np.concatenate([np.ones(3), np.zeros(6)])
+    found = optimize.least_squares(lambda v: real(model(v)[0] - motion), first, lambda v: real(model(v)[1]), method="lm")
+    jacobian = real(model(found.x)[1])
+    bread = np.linalg.inv(jacobian.T @ jacobian)
+    scores = jacobian * found.fun[:, None]
+    covariance = (bread @ (scores.T @ scores) @ bread)[:3, :3] * np.outer(start, start)
+    k, c, j = found.x[:3] * start
+    natural, ratio = np.sqrt(np.abs(k / j)) / (2.0 * np.pi), c / (2.0 * np.sqrt(np.abs(k * j)))
     slopes = {
         "natural_frequency": (natural, np.array([0.5 / k, 0.0, -0.5 / j]) * natural, "Hz"),
         "damping_ratio": (ratio, np.array([-0.5 / k, 1.0 / c, -0.5 / j]) * ratio, "1"),
@@ -116,8 +167,8 @@ def _mode(
         "stiffness": (k, np.array([1.0, 0.0, 0.0]), "N/m" if translational else "N m/rad"),
         "damping": (c, np.array([0.0, 1.0, 0.0]), "N s/m" if translational else "N m s/rad"),
     }
-    found = {}
-    for name, (value, slope, unit) in slopes.items():
+    told = {}
+    for name, (value, slope, unit_of) in slopes.items():
         error = float(np.sqrt(slope @ covariance @ slope))
-        found[name] = Value(float(value), error, (float(value - 1.96 * error), float(value + 1.96 * error)), unit)
-    return found
+        told[name] = Value(float(value), error, (float(value - 1.96 * error), float(value + 1.96 * error)), unit_of)
+    return told

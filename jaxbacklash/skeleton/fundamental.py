@@ -15,10 +15,24 @@ from functools import cached_property
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from ..signals import Atoms, Carrier, CycleSpline, Morlet, Scalogram, analytic, carrier, frequency_grid, ridge, scalogram
+from ..signals import (
+    Atoms,
+    Carrier,
+    CycleSpline,
+    Morlet,
+    Scalogram,
+    analytic,
+    carrier,
+    frequency_grid,
+    highest_frequency,
+    ridge,
+    scalogram,
+)
 
 MOST_POINTS = 1000
 """Points of a skeleton; two a cycle until there are so many."""
+SHOWN = 16.0
+"""Samples a cycle of the highest frequency that the picture in which the ridge is sought is made from."""
 FASTEST = 0.5
 """Largest share of its own width squared by which an atom's frequency may sweep, see `WaveletFundamental`."""
 
@@ -102,7 +116,8 @@ class WaveletFundamental(Fundamental):
         self.path = _smooth_path(picture.t, ridge(picture))
         each = 0.5 * (self.path[1:] + self.path[:-1]) * np.diff(picture.t)
         rough = 2.0 * np.pi * np.interp(t, picture.t, np.concatenate([[0.0], np.cumsum(each)]))
-        late = t > picture.t[-1]
+        early, late = t < picture.t[0], t > picture.t[-1]
+        rough[early] += 2.0 * np.pi * self.path[0] * (t[early] - picture.t[0])
         rough[late] += 2.0 * np.pi * self.path[-1] * (t[late] - picture.t[-1])
         self._place(t, _twice_a_cycle(t, rough), picture.wavelet)
         # The ridge finds the frequency to a thousandth; the atoms' phase and its rate know it better.
@@ -151,19 +166,18 @@ def wavelet_fundamental(t: np.ndarray, drive: np.ndarray) -> WaveletFundamental 
 
 
 def picture_of(t: np.ndarray, values: np.ndarray, wavelet: Morlet | None = None) -> Scalogram | None:
-    """A scalogram over the band that holds all but a thousandth of the signal's speed."""
+    """A scalogram over the band that holds all but a thousandth of the signal's speed, of means that still show that band."""
     dt = (t[-1] - t[0]) / (t.size - 1)
-    duration = t[-1] - t[0]
-    power = np.abs(np.fft.rfft(values - np.mean(values))) ** 2
-    frequencies = np.fft.rfftfreq(t.size, dt)
-    share = np.cumsum(power * frequencies**2)
-    if not share[-1] > 0.0:
+    low, fastest = 4.0 / (t[-1] - t[0]), highest_frequency(values, dt, 0.999)
+    if not fastest > 0.0:
         return None
-    low = 4.0 / duration
-    high = float(np.clip(1.5 * frequencies[np.searchsorted(share, 0.999 * share[-1])], 2.0 * low, 0.12 / dt))
+    high = float(np.clip(1.5 * fastest, 2.0 * low, 0.12 / dt))
     if high <= 1.5 * low:
         return None
-    return scalogram(t, values, frequency_grid(low, high, 12), wavelet=wavelet)
+    group = max(1, int(1.0 / (SHOWN * high * dt)))
+    whole = t.size // group * group
+    at, shown = (v[:whole].reshape(-1, group).mean(axis=1) for v in (t, values))
+    return scalogram(at, shown, frequency_grid(low, high, 12), wavelet=wavelet)
 
 
 def _twice_a_cycle(t: np.ndarray, phase: np.ndarray) -> np.ndarray:

@@ -6,8 +6,11 @@ Along the carrier the equation of motion reads, point by point and term by term,
 
 capital letters being complex amplitudes and :math:`D_h` that of the deflection :math:`\delta_h(z)`. The ratio
 :math:`D_h/Z` is the describing function of the waveform that was measured; for a sine it is N(h/A). For a given half play
-the rest is linear; the half play comes from a search. Two simpler forms of :math:`D_h` stand beside it: ``sine`` takes N(h/A),
-``axis`` the straight line of the paper's regression.
+the rest is linear; the half play comes from a search. A simpler form stands beside it: ``sine`` takes N(h/A). The paper's
+straight line is `describing_function.axis_crossing`.
+
+With the measured waveform this is the equation of motion in weak form, the Morlet atoms (or the splines of the analytic
+signal) being the test functions: that is why it can be as good as a fit. It needs one frequency at a time, where a fit does not.
 
 Residuals of neighbouring points are anything but independent: amplitudes overlap in time, and what is wrong with the model
 is wrong for long stretches. Errors therefore come from leaving out whole stretches of the record in turn (jackknife), and
@@ -16,6 +19,7 @@ intervals from Student's t with as many degrees of freedom as stretches allow.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,7 +31,7 @@ from .fundamental import Fundamental
 BLOCK = 8
 """Least points in a stretch of the jackknife: four cycles, past which amplitudes share no sample with most of their weight."""
 MOST_BLOCKS, FEWEST_BLOCKS = 20, 5
-WAYS = ("waveform", "sine", "axis")
+WAYS = ("waveform", "sine")
 
 
 @dataclass(frozen=True)
@@ -50,9 +54,7 @@ class Terms:
         if way == "waveform":
             return self.along.of(dead_zone(self.z, half_play, centre))
         size = np.maximum(np.abs(self.position), 1e-300)
-        if way == "sine":
-            return self.position * describing_function(size, half_play)
-        return self.position * (1.0 - half_play / size)
+        return self.position * describing_function(size, half_play)
 
 
 @dataclass(frozen=True)
@@ -94,7 +96,7 @@ def invert(
     terms : amplitudes along the carrier
     keep : points that count
     inertia : J [kg m^2]; None needs a measured force
-    way : ``"waveform"``, ``"sine"`` or ``"axis"``
+    way : ``"waveform"`` or ``"sine"``
     centre : middle of the play in z; None: where the contacts push as much one way as the other
 
     Returns
@@ -120,13 +122,8 @@ def invert(
     low, high = grid[max(best - 1, 0)], grid[min(best + 1, grid.size - 1)]
     half = float(optimize.minimize_scalar(misfit, bounds=(low, high), method="bounded", options={"xatol": 1e-5 * peak}).x)
     at = middle(half)
-    deflection = terms.deflection(half, at, way)
-    _, solution, residual = regression.solve(deflection)
-    step = 1e-3 * peak
-    slope = (terms.deflection(half + step, at, way) - terms.deflection(max(half - step, 0.0), at, way)) / (
-        half + step - max(half - step, 0.0)
-    )
-    jacobian = regression.matrix(solution[0] * slope, deflection)
+    _, solution, residual = regression.solve(terms.deflection(half, at, way))
+    jacobian = regression.jacobian(half, at, solution[0], 1e-3 * peak, way)
     share = float(np.sqrt(np.mean(residual**2) / np.mean(regression.right**2)))
     values = np.concatenate([[half], solution])
     covariance, _ = jackknife(jacobian, residual, blocks)
@@ -134,21 +131,38 @@ def invert(
     return Inversion(values, covariance, at, blocks, share, peak, drift, error)
 
 
+def linearised(
+    terms: Terms, keep: np.ndarray, found: Inversion, inertia: float | None
+) -> tuple[np.ndarray, np.ndarray, Callable[[np.ndarray], np.ndarray]]:
+    """The regression around its solution: Jacobian (2 n, q) in the order of ``values``, residual (2 n,), and the function that
+    makes such a real column from amplitudes (M,)."""
+    regression = _Regression(terms, np.flatnonzero(keep), inertia)
+    jacobian = regression.jacobian(found.values[0], found.centre, found.values[1], 1e-3 * found.peak)
+    residual = regression.solve(terms.deflection(found.values[0], found.centre))[2]
+    return jacobian, residual, regression.real
+
+
 class _Regression:
     """The weighted complex regression at a given half play, as a real one of twice the rows."""
 
     def __init__(self, terms: Terms, index: np.ndarray, inertia: float | None) -> None:
-        self._index = index
+        self._terms, self._index = terms, index
         self._others = [terms.velocity] + ([terms.acceleration] if inertia is None else [])
         known = terms.torque - (inertia or 0.0) * terms.acceleration
         # Errors of the method grow with the torque, those of the noise do not: weights between the two.
         size = np.abs(terms.torque[index]) + (inertia or 0.0) * np.abs(terms.acceleration[index])
         self._weight = 1.0 / (size + 0.1 * float(np.max(size)) + 1e-300)
-        self.right = self._real(known)
+        self.right = self.real(known)
 
     def matrix(self, *first: np.ndarray) -> np.ndarray:
         """Real columns (2 n, q): those given, then velocity and, where it is unknown, inertia."""
-        return np.stack([self._real(column) for column in (*first, *self._others)], axis=1)
+        return np.stack([self.real(column) for column in (*first, *self._others)], axis=1)
+
+    def jacobian(self, half: float, centre: float, stiffness: float, step: float, way: str = "waveform") -> np.ndarray:
+        """What the torque changes by with half play, stiffness, damping (and inertia), (2 n, q)."""
+        low, high = max(half - step, 0.0), half + step
+        above, below = (self._terms.deflection(at, centre, way) for at in (high, low))
+        return self.matrix(stiffness * (above - below) / (high - low), self._terms.deflection(half, centre, way))
 
     def solve(self, deflection: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
         """Residual sum of squares, (stiffness, damping, [inertia]), residual (2 n,)."""
@@ -159,7 +173,8 @@ class _Regression:
         residual = self.right - matrix @ solution
         return float(residual @ residual), solution, residual
 
-    def _real(self, column: np.ndarray) -> np.ndarray:
+    def real(self, column: np.ndarray) -> np.ndarray:
+        """A column as the regression sees it: amplitudes (M,) at the points that count, weighted, real parts first (2 n,)."""
         both = column[self._index] * self._weight
         return np.concatenate([both.real, both.imag])
 

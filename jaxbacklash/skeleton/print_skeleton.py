@@ -54,7 +54,9 @@ def verdict(found: Skeletons) -> str:
     apart = abs((a.value or 0.0) - (b.value or 0.0)) / max(spread, 1e-300)
     if apart < 3.0:
         best = a if (a.stderr or 0.0) < (b.stderr or 0.0) else b
-        return f"Both methods agree on a total play of {_play(best)}."
+        doubt = any("was left out" in sentence for sentence in found.warnings)
+        but = ", but both left out the same torque, see the notes: its error allows for that" if doubt else ""
+        return f"Both methods agree on a total play of {_play(best)}{but}."
     return (
         f"The methods differ by {apart:.1f} of their standard errors on the play ({_play(a)} and {_play(b)}): "
         "trust neither further than their difference."
