@@ -16,7 +16,8 @@ OMEGA = 0.2
 
 
 def c_program() -> Callable[..., tuple[np.ndarray, np.ndarray]]:
-    """Compile and load `rk4_map.c`; the function takes 1/alpha, zeta, periods, skip and steps a period."""
+    """Compile and load `rk4_map.c`; the function takes 1/alpha, zeta, the starts (2, N), periods, skip and
+    steps a period."""
     folder = Path(tempfile.mkdtemp())
     source, library = Path(__file__).with_name("rk4_map.c"), folder / "rk4_map.so"
     flags = ["-O3", "-march=native", "-mprefer-vector-width=512", "-ffast-math", "-fopenmp", "-shared", "-fPIC"]
@@ -24,12 +25,14 @@ def c_program() -> Callable[..., tuple[np.ndarray, np.ndarray]]:
     routine = ctypes.CDLL(str(library)).rk4_map
     pointer = np.ctypeslib.ndpointer(dtype=np.float64, flags="C_CONTIGUOUS")
     long = ctypes.c_long
-    routine.argtypes = [long, pointer, pointer, ctypes.c_double, long, long, long, pointer, pointer]
+    routine.argtypes = [long, pointer, pointer, pointer, pointer, ctypes.c_double, long, long, long, pointer, pointer]
     routine.restype = None
 
-    def run(inverse_alpha: Array, zeta: Array, periods: int, skip: int, steps: int) -> tuple[np.ndarray, np.ndarray]:
+    def run(
+        inverse_alpha: Array, zeta: Array, start: Array, periods: int, skip: int, steps: int
+    ) -> tuple[np.ndarray, np.ndarray]:
         found, last = np.empty(len(zeta)), np.empty(len(zeta))
-        routine(len(zeta), inverse_alpha, zeta, OMEGA, periods, skip, steps, found, last)
+        routine(len(zeta), inverse_alpha, zeta, *start, OMEGA, periods, skip, steps, found, last)
         return found, last
 
     return run

@@ -12,8 +12,8 @@
 
 static inline double law(double p) { return p - fmin(1.0, fmax(-1.0, p)); }
 
-void rk4_map(long cells, const double *inverse_alpha, const double *zeta, double omega, long periods, long skip, long steps,
-             double *lyapunov, double *last) {
+void rk4_map(long cells, const double *inverse_alpha, const double *zeta, const double *p0, const double *v0, double omega, long periods,
+             long skip, long steps, double *lyapunov, double *last) {
     const double period = 2.0 * M_PI / omega, h = period / steps;
     double *cosine = malloc(sizeof(double) * (2 * steps + 1));
     for (long k = 0; k <= 2 * steps; k++) cosine[k] = cos(M_PI * k / steps);
@@ -23,7 +23,9 @@ void rk4_map(long cells, const double *inverse_alpha, const double *zeta, double
         const long here = cells - block < LANES ? cells - block : LANES;
         for (long i = 0; i < LANES; i++) {
             const long cell = block + (i < here ? i : here - 1);
-            p[i] = v[i] = b[i] = sum[i] = 0.0;
+            p[i] = p0[cell];
+            v[i] = v0[cell];
+            b[i] = sum[i] = 0.0;
             a[i] = 1.0;
             d[i] = 2.0 * zeta[cell];
             alpha[i] = 1.0 / inverse_alpha[cell];

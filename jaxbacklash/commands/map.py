@@ -6,6 +6,7 @@ import os
 import shutil
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from ..dynamics.family import CASES, PaperCase
 from ..dynamics.follow import compile_exact
 from ..dynamics.labels import need_xarray, write_netcdf
 from ..dynamics.maps import Request, request, run_map
+from ..dynamics.tiles import need_zarr
 from ..errors import BadInput
 from .common import json_text, progress
 
@@ -34,7 +36,6 @@ def run(
         raise BadInput(f"--case {case}: wanted 1 or 2")
     if out.suffix.lower() not in (".nc", ".nc4"):
         raise BadInput(f"--out {out}: found the suffix {out.suffix!r}, wanted .nc")
-    need_xarray()
     wanted = read_request(case, {"inverse_alpha": inverse_alpha, "zeta": zeta, "Omega": omega}, periods, skip, samples, start)
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
@@ -45,7 +46,7 @@ def run(
     start_up = process_age() or ready - begun
     with progress(as_json) as tell:
         tell("compiling", 0.0)
-        compile_exact(int(np.prod(wanted.tile)), wanted.plan)
+        compile_beside_imports(wanted)
         compiled = time.perf_counter()
         map_ = run_map(wanted, store=store, progress=tell)
         write_netcdf(map_, out)
@@ -68,6 +69,16 @@ def run(
     else:
         print("\n".join(words(result)))
         print(f"written: {out}, {out.with_suffix('.html').name}, {out.with_suffix('.png').name}")
+
+
+def compile_beside_imports(wanted: Request) -> None:
+    """Compile the map's program while the libraries that keep and draw it are loaded: the compiler leaves Python free."""
+    with ThreadPoolExecutor(1) as pool:
+        compiling = pool.submit(compile_exact, int(np.prod(wanted.tile)), wanted.plan)
+        need_xarray()
+        need_zarr()
+        from ..report import map_report as map_report
+        compiling.result()
 
 
 def read_request(

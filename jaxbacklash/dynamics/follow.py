@@ -24,6 +24,8 @@ from .plan import Followed, Plan
 
 Array = Any
 
+BLOCK = 128
+"""Cells that wait for each other on a CPU: what a leg needs of them stays in the cache nearest to the core."""
 PANELS = 128
 """Fewest panels in a period of the drive where steps are only located."""
 
@@ -59,14 +61,13 @@ def follow(
     if why is None and period is None:
         assert isinstance(drive, Harmonic)
         form = normal_form(system, drive)
-        x0 = jax.vmap(lambda d: d.at(jnp.zeros(())))(_full(drive, y0))
-        p0 = (y0 - x0.x - form.middle) / form.half_play
-        v0 = (dy0 - x0.dx) / form.half_play
-        one = jnp.ones(jnp.shape(y0))
-        pieces = jax.tree.map(lambda leaf: leaf * one, form.pieces)
-        found = follow_exact(pieces, form.phase * one, p0 * one, v0 * one, plan.stops, plan)
-        half, middle = form.half_play, form.middle
-        last = jnp.stack([middle + half * found.last[0], half * found.last[1]])
+        one = np.ones(np.shape(y0))
+        x0, dx0 = (0.0, 0.0) if drive.as_force else _base_at_start(_full(drive, y0))
+        half, middle, phase = (np.asarray(part) for part in (form.half_play, form.middle, form.phase))
+        p0, v0 = (np.asarray(y0) - np.asarray(x0) - middle) / half * one, (np.asarray(dy0) - np.asarray(dx0)) / half * one
+        pieces = jax.tree.map(lambda leaf: np.asarray(leaf) * one, form.pieces)
+        found = jax.tree.map(np.asarray, follow_exact(pieces, phase * one, p0, v0, plan.stops, plan))
+        last = np.stack([middle + half * found.last[0], half * found.last[1]])
         return found._replace(p=middle + half * found.p, v=half * found.v, last=last), "exact linear pieces"
     if exact:
         raise ValueError(f"exact steps cannot be used: {why or 'another period than that of the drive was given'}")
@@ -88,12 +89,38 @@ def default_panels(system: System, period: Array) -> int:
 
 
 def _full(tree: Any, like: Array) -> Any:
-    return jax.tree.map(lambda leaf: jnp.asarray(leaf, dtype=float) * jnp.ones(jnp.shape(like)), tree)
+    return jax.tree.map(lambda leaf: np.asarray(leaf, dtype=float) * np.ones(np.shape(like)), tree)
+
+
+@eqx.filter_jit
+def _base_at_start(drive: AbstractExcitation) -> tuple[Array, Array]:
+    start = jax.vmap(lambda d: d.at(jnp.zeros(())))(drive)
+    return start.x, start.dx
 
 
 @partial(jax.jit, static_argnames="plan")
 def follow_exact(pieces: LinearPieces, phase: Array, p0: Array, v0: Array, stops: Array, plan: Plan) -> Followed:
-    """`follow` in units of the half play: all but ``plan`` and its ``stops`` are (N,)."""
+    """`follow` in units of the half play: all but ``plan`` and its ``stops`` are (N,).
+
+    On a CPU one block of lanes runs to its end before the next begins; elsewhere all run together.
+    """
+    lanes = p0.shape[0]
+    if jax.default_backend() != "cpu" or lanes <= BLOCK:
+        return _follow_block(pieces, phase, p0, v0, stops, plan)
+    blocks = -(-lanes // BLOCK)
+    given = jax.tree.map(
+        lambda a: jnp.pad(a, (0, blocks * BLOCK - lanes), mode="edge").reshape(blocks, BLOCK), (pieces, phase, p0, v0)
+    )
+
+    def one(block: Any) -> Followed:
+        pieces, phase, p0, v0 = block
+        return _follow_block(pieces, phase, p0, v0, stops, plan)
+
+    found = jax.lax.map(one, given)
+    return jax.tree.map(lambda a: jnp.moveaxis(a, 0, -2).reshape(*a.shape[1:-1], -1)[..., :lanes], found)
+
+
+def _follow_block(pieces: LinearPieces, phase: Array, p0: Array, v0: Array, stops: Array, plan: Plan) -> Followed:
     solution = diffrax.diffeqsolve(
         Pieces(), ExactPeriods(), stops[0], stops[-1], None, begin(p0, v0), (pieces, phase),
         stepsize_controller=diffrax.StepTo(ts=stops), saveat=diffrax.SaveAt(steps=True, t0=True, fn=_kept),
@@ -105,7 +132,7 @@ def follow_exact(pieces: LinearPieces, phase: Array, p0: Array, v0: Array, stops
 
 def compile_exact(lanes: int, plan: Plan) -> None:
     """Compile `follow_exact` for so many lanes by a run that is over at once."""
-    one = jnp.ones(lanes)
+    one = np.ones(lanes)
     pieces = LinearPieces(*(one * number for number in (0.1, 0.0, 0.0, 1.0, 0.0, 0.1, 1.0)))
     jax.block_until_ready(follow_exact(pieces, 0.0 * one, 0.0 * one, 0.0 * one, 1e-6 * plan.stops, plan))
 

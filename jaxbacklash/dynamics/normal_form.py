@@ -71,7 +71,8 @@ def normal_form(system: System, drive: Harmonic) -> NormalForm:
     # J z'' = F + T0 - k delta - c z' - k1 (z - z1) + G (z + x) - J x''
     size = drive.amplitude if drive.as_force else (G + inertia * drive.omega**2) * drive.amplitude
     load = constant + k1 * z1 - (k1 - G) * middle
-    one = jnp.ones(jnp.broadcast_shapes(*(jnp.shape(v) for v in (inertia, half, k1, size, load, extra, drive.omega,
+    # numpy: numbers that are known need no program of their own for each operation.
+    one = np.ones(jnp.broadcast_shapes(*(jnp.shape(v) for v in (inertia, half, k1, size, load, extra, drive.omega,
         system.damper.damping, system.contact.stiffness))))  # fmt: skip
     pieces = LinearPieces(
         one * system.damper.damping / inertia, one * extra / inertia, one * (k1 - G) / inertia,
