@@ -103,6 +103,11 @@ class AbstractEffect(eqx.Module):
         strengths = {n: s.scale for n, s in described.items() if shaped and s.null is not None and s.scale}
         return [cls(**strengths)]
 
+    @classmethod
+    def in_place_of(cls, other: AbstractEffect) -> list[AbstractEffect]:
+        """Points from which a fit may start where this law takes the place of a fitted one of its ``family``; none: `guesses`."""
+        return []
+
     def torque(self, now: Instant) -> Scalar:
         """Torque on the link [N m], dry friction included (in the direction ``now`` knows, else smoothed)."""
         return jnp.zeros_like(now.y)

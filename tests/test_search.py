@@ -45,6 +45,15 @@ def test_names_what_is_hidden(name):
 
 
 @pytest.mark.slow
+def test_names_friction_with_a_memory_and_nothing_beside_it():
+    hidden = {"lugre": {"sigma0": 4000.0, "sigma1": 3.0, "Fc": 4.0, "Fs": 7.0, "vs": 0.1}}
+    found = jb.refine(record(hidden), inertia=RIG.inertia)
+    assert len(found.effects) == 1
+    assert found.effects[0] in ("dahl", "lugre", "bouc_wen")
+    assert found.verdict.complete
+
+
+@pytest.mark.slow
 def test_admits_what_it_does_not_know():
     hidden = {"unknown_disturbance": {"A": 8.0, "w": 30.0, "phi": 0.4}}
     found = jb.refine(record(hidden), inertia=RIG.inertia)

@@ -10,6 +10,8 @@ from .workbench import Trial, Workbench, strengths
 
 NOISE_FLOOR = 1.03
 """Root of the reduced chi-square up to which what is left counts as noise, since the noise itself is estimated."""
+AS_WELL = 0.98
+"""Share of the best candidate's gain that counts as doing as well: then the simpler law is taken."""
 UNEXPLAINED = 0.02
 """Reduced chi-square above 1 that is too much for an error of the estimated noise."""
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from ..fitting.fit import silent
+from ..fitting.fit import ADEQUATE, silent
 from ..mechanics import AbstractEffect
 from ..parameters import specs, values, with_values
 from .candidates import Candidate, rank
-from .evidence import NOISE_FLOOR, UNEXPLAINED, demanded, excess, explained, gain, measures_only, significance
+from .evidence import AS_WELL, NOISE_FLOOR, UNEXPLAINED, demanded, excess, explained, gain, measures_only, significance
+from .memories import Member, families, may_replace, members
+from .tuning import apart
 from .workbench import PATIENCE, Trial, Workbench, adequate, strengths
 
 MOST_EFFECTS = 5
@@ -18,8 +20,6 @@ TRIED = 4
 """Candidates that are really refitted at every stage."""
 CLOSE, HOPEFUL = 0.9, 0.2
 """Predicted gain, as a share of the best candidate's, that earns a refit: once noise is reached, and before."""
-AS_WELL = 0.98
-"""Share of the best candidate's gain that counts as doing as well: then the simpler law is taken."""
 CLEAR = 8.0
 """An effect that stands so many standard errors from zero need not be left out to see that it is missed."""
 LITTLE, MUCH, MOST = 0.1, 0.25, 0.5
@@ -171,20 +171,15 @@ class Search:
         name = next((n for n in sorted(final.names) if self.bench.laws[n].states and self.bench.laws[n].family), None)
         if name is None or (explained(final) and len(final.names) == 1):
             return steps
-        effects = {n: e for n, e in self.bench.effects(final).items() if n != name}
         best = final
-        for other, law in self.bench.laws.items():
-            if other == name or law.family != self.bench.laws[name].family or not law.states:
-                continue
-            self.progress(f"trying {other} in place of {name}", 0.7)
-            guesses = law.guesses(final.system)
-            for effect in self.bench.quick.choose(steps[0].trial.system, steps[0].trial.free, guesses, keep=1):
-                trial = self._keep(self.bench.fit({**effects, other: effect}, final, tied=False, patience=WHOLE))
-                settled, _ = self.prune(self.settle(trial))
-                lead = best.criterion - settled.criterion
-                better = settled.tied > best.tied or (settled.tied == best.tied and lead > demanded(self.bench))
-                if other in settled.names and better:
-                    best = settled
+        family = families(self.bench)[self.bench.laws[name].family or ""]
+        for member in members(self.bench, final, family):
+            self.progress(f"trying {member.name} in place of {name}", 0.7)
+            settled, _ = self.prune(self.settle(self.placed(final, member, tied=final.tied, patience=WHOLE)))
+            ahead = best.criterion - settled.criterion
+            better = settled.tied > best.tied or (settled.tied == best.tied and ahead > demanded(self.bench))
+            if member.name in settled.names and better:
+                best = settled
         if best is final:
             return steps
         added = next(n for n in best.names if self.bench.laws[n].states)
@@ -225,6 +220,8 @@ class Search:
         own = next((c.gain for c in ranking if c.name == name), 0.0)
         near = [c for c in ranking if c.name not in final.names and c.gain > CLOSE * own][:2]
         near = [c for c in near if c.name not in self.bench.laws[name].absorbs]
+        if name in [n for names in families(self.bench).values() for n in names]:
+            near = [c for c, may in zip(near, may_replace(self.bench, final, name, [c.effect for c in near])) if may]
         return simpler + [self._keep(self.joined({**kept, c.name: c.effect}, final)) for c in near]
 
     def simplified(self, final: Trial, name: str, other: str) -> Trial:
@@ -249,7 +246,7 @@ class Search:
             ranking = tuple(rank(self.bench, current))
             tried = self.attempts(current, ranking)
             promised = {c.name for c in ranking if c.gain > SURE * demanded(self.bench)}
-            if current.tied and any(t.cost > current.cost for n, t in tried.items() if n in promised):
+            if current.tied and any(not t.tied or (t.cost > current.cost and n in promised) for n, t in tried.items()):
                 # A trajectory in one piece has stuck on the way to a clear gain: this stage is judged on free windows.
                 current = self.loosened(current)
                 tried = self.attempts(current, ranking)
@@ -261,8 +258,9 @@ class Search:
             name = self.best(current, tried)
             if evidence[name] < demanded(self.bench) or self.nibbles(current, tried[name], least):
                 break
+            replaced = tuple(sorted(current.names - tried[name].names))
             current, dropped = self.prune(self.settle(tried[name]), spare=name)
-            steps.append(Step(current, name, dropped, ()))
+            steps.append(Step(current, name, replaced + dropped, ()))
         return steps
 
     def attempts(self, current: Trial, ranking: tuple[Candidate, ...]) -> dict[str, Trial]:
@@ -270,12 +268,20 @@ class Search:
         scale = max(1.0, current.misfit**2) * current.correlation
         telling = [c for c in ranking if c.gain / scale > 0.5 * demanded(self.bench)][:TRIED]
         tried: dict[str, Trial] = {}
+        # Friction's memory is looked for first where no static law promises to do, or there is friction that may have one.
+        looked = bool(telling) and (telling[0].predicted > ADEQUATE or self.rubs(current))
+        if looked:
+            tried = self.memories(current, ranking)
         for c in telling:
             enough = tried and min(t.misfit for t in tried.values()) < NOISE_FLOOR
+            if enough and any(self.bench.laws[n].states for n in tried):
+                break  # it was ahead of every static one before it was fitted
             if c.gain < (CLOSE if enough else HOPEFUL) * telling[0].gain:
                 continue
             self.progress(f"trying {c.name}", 0.4)
             tried[c.name] = self.add(current, c)
+            if not looked and not explained(tried[c.name]):
+                tried, looked = tried | self.memories(current, ranking), True
         return tried
 
     def finished(self, current: Trial, tried: dict[str, Trial]) -> dict[str, Trial]:
@@ -286,8 +292,40 @@ class Search:
         undecided = len(close) > 1
         return {n: self.finish(t) if undecided and n in close and not t.done else t for n, t in tried.items()}
 
+    def rubs(self, trial: Trial) -> bool:
+        """Whether a model has friction in the joint: what a record asks for beside it may be that friction's memory."""
+        effects = self.bench.effects(trial).values()
+        return any((e.family and e.states) or (e.slides and e.port == "joint") for e in effects)
+
+    def memories(self, current: Trial, ranking: tuple[Candidate, ...]) -> dict[str, Trial]:
+        """Models with a law of friction that gives before it slips, where the quick look puts it before every static one.
+
+        It stands in place of dry friction in the joint, and of its own kin: what is to stand beside one such law has to do
+        better than another of its family alone.
+        """
+        rivals = [apart(c.effect, strengths(c.effect)) for c in ranking[:TRIED] if c.gain > 0.0]
+        first = [found[0] for names in families(self.bench).values() if (found := members(self.bench, current, names, rivals))]
+        return {m.name: self.placed(current, m, tied=current.tied) for m in first}
+
+    def placed(self, trial: Trial, member: Member, *, tied: bool, patience: int = PATIENCE) -> Trial:
+        """The model with a law of a family with internal states in it, in place of those it takes the place of."""
+        effects = {**member.beside, member.name: member.tuned.effect}
+        key = (frozenset(effects), tied)
+        if key not in self.known:
+            self.progress(f"trying {member.name}", 0.45)
+            # A joint that was fitted without friction's memory is bent by it: the tuned one is nearer.
+            joint = trial.system if member.kin else member.tuned.system
+            fitted = self._keep(self.bench.fit(effects, trial, joint=joint, tied=tied, patience=patience, followed=True))
+            if tied and not adequate(fitted):
+                # Windows that are one trajectory can keep a law from where free ones find it.
+                free = self._keep(self.bench.fit(effects, trial, joint=joint, patience=patience, followed=True))
+                return self.settle(free)
+        return self.known[key]
+
     def best(self, current: Trial, tried: dict[str, Trial]) -> str:
         """The simplest of the candidates that do as well as any: fewest parameters, acting before measuring only."""
+        # What leaves noise goes before what does not, however little is left.
+        tried = {n: t for n, t in tried.items() if explained(t)} or tried
         lowest = min(t.criterion for t in tried.values())
         slack = max(1.0, (1.0 - AS_WELL) * (current.criterion - lowest))
         level = [n for n, t in tried.items() if t.criterion - lowest < slack]
@@ -314,15 +352,15 @@ class Search:
             dropped.append(name)
 
     def hidden(self, start: Trial) -> list[Trial]:
-        """Models with a law that has internal states beside those of ``start``, one law of a family unless that falls short."""
+        """Models with a law that has internal states beside those of ``start``, the likeliest of a family, until one explains."""
         found: list[Trial] = []
-        absent = {n: law for n, law in self.bench.laws.items() if law.states and n not in start.names}
-        for name in sorted(absent, key=lambda n: len(specs(absent[n]()))):
-            family = absent[name].family
-            kin = [t for t in found if family and any(absent[n].family == family for n in t.names - start.names)]
-            if any(t.misfit < NOISE_FLOOR for t in kin):
+        for names in families(self.bench).values():
+            if start.names.isdisjoint(names):
+                found += [self.placed(start, m, tied=False) for m in members(self.bench, start, names)[:1]]
+        for name, law in self.bench.laws.items():
+            if not law.states or law.family or name in start.names or any(t.misfit < NOISE_FLOOR for t in found):
                 continue
-            guesses = self.bench.laws[name].guesses(start.system)
+            guesses = law.guesses(start.system)
             if start.misfit > FAR and self.bench.quick.share(start.system, start.free, guesses) < GLIMPSE:
                 continue
             self.progress(f"trying {name}", 0.6)
@@ -330,7 +368,7 @@ class Search:
                 effects: dict[str, AbstractEffect] = {**self.bench.effects(start), name: effect}
                 found.append(self._keep(self.bench.fit(effects, start, tied=False)))
                 if found[-1].misfit < NOISE_FLOOR:
-                    return found
+                    break
         return found
 
     def _keep(self, trial: Trial) -> Trial:

@@ -23,6 +23,7 @@ from ..mechanics import AbstractEffect, catalogue
 from ..parameters import specs, values, with_values
 from ..records import Record
 from ..system import System
+from .along_motion import own_states
 from .quick_look import QuickLook
 
 COLUMNS = 10
@@ -119,7 +120,7 @@ class Workbench:
 
     def fit(
         self, effects: dict[str, AbstractEffect], start: Trial | None = None, *, joint: System | None = None,
-        tied: bool = False, patience: int = PATIENCE,
+        tied: bool = False, patience: int = PATIENCE, followed: bool = False,
     ) -> Trial:  # fmt: skip
         """Fit the joint with these effects, from their values and from the windows of an earlier fit.
 
@@ -130,6 +131,7 @@ class Workbench:
         joint : a system whose joint to start from; default that of ``start``
         tied : fit one trajectory instead of free windows
         patience : linearisations allowed
+        followed : take internal states that ``start`` does not have from the laws followed along the measured motion
         """
         begin = joint if joint is not None else (self.base if start is None else start.system)
         problem, free = self.problem(effects, begin)
@@ -138,6 +140,8 @@ class Workbench:
             same = start.system.state_names == problem.system.state_names
             own = start.unknowns.starts if same else np.concatenate([start.unknowns.starts[:2], unknowns.starts[2:]])
             unknowns = Unknowns(unknowns.theta, own, start.unknowns.coefficients)
+        if followed:
+            unknowns = Unknowns(unknowns.theta, self._followed(effects, begin, unknowns.starts), unknowns.coefficients)
         self.fits += 1
         if tied:
             problem, solution, _ = tie_windows(problem, unknowns, TIES[0], limit=patience)
@@ -148,6 +152,11 @@ class Workbench:
         else:
             solution = minimise(problem, unknowns, ArrowLevenbergMarquardt(limit=patience, atol=0.1, rtol=ENOUGH))
         return self._trial(problem, solution, frozenset(effects), free, tied, patience)
+
+    def _followed(self, effects: dict[str, AbstractEffect], joint: System, starts: np.ndarray) -> np.ndarray:
+        m, t0 = self.quick.motion, np.asarray(self.windows.t0)
+        hidden = [np.interp(t0, m.t, s) for n in sorted(effects) for s in own_states(effects[n], joint, m)]
+        return np.stack([*np.asarray(starts)[:2], *hidden])
 
     def look(self, problem: Problem, unknowns: Unknowns) -> tuple[np.ndarray, np.ndarray, float, np.ndarray]:
         """Information about all columns (q, q), their score (q,), the cost, and the columns' scales (q,), at a point."""

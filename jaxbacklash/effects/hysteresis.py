@@ -18,6 +18,22 @@ FASTEST = 1000.0
 """Largest rate [1/s] at which a state follows. Met only in fast sliding, where the state has settled already."""
 
 
+def presliding(system: Any) -> tuple[float, ...]:
+    """Distances [rad] over which friction may give before it slips, in a joint like this one: parts of the play."""
+    if system.has_play:
+        return tuple(share * float(system.contact.backlash) for share in (0.08, 0.02, 0.3))
+    return 1e-3, 3e-3
+
+
+def slope_and_level(effect: AbstractEffect) -> list[tuple[float, float]]:
+    """Torque per angle at a reversal [N m/rad] and sliding torque [N m] of a law of this file; nothing of another one."""
+    if isinstance(effect, Lugre):
+        return [(float(effect.sigma0), float(effect.Fc))]
+    if isinstance(effect, Dahl | BoucWen):
+        return [(float(effect.sigma), float(effect.Fc))]
+    return []
+
+
 def _flow(speed: Scalar, sigma: Scalar, level: Scalar) -> Scalar:
     """Speed [rad/s] in units of the presliding distance level / sigma, 1/s, limited to `FASTEST`."""
     return jnp.clip(speed * (sigma / jnp.maximum(level, 1e-9 * sigma)), -FASTEST, FASTEST)
@@ -34,6 +50,14 @@ class Dahl(AbstractEffect):
     states: ClassVar[tuple[str, ...]] = ("s",)
     family: ClassVar[str | None] = "hysteresis"
 
+    @classmethod
+    def guesses(cls, system: Any) -> list[AbstractEffect]:
+        return [cls(Fc=1.0, sigma=1.0 / distance) for distance in presliding(system)]
+
+    @classmethod
+    def in_place_of(cls, other: AbstractEffect) -> list[AbstractEffect]:
+        return [cls(Fc=level, sigma=slope) for slope, level in slope_and_level(other)]
+
     def torque(self, now: Instant) -> Scalar:
         return -self.Fc * now.state[0]
 
@@ -49,8 +73,9 @@ class Lugre(AbstractEffect):
     r"""LuGre friction, :math:`T = -(\sigma_0 s + \sigma_1 \dot s + \sigma_2 \dot z)` (Canudas de Wit et al., 1995).
 
     The bristle gives :math:`\dot s = \dot z - \sigma_0 |\dot z| s / g` with
-    :math:`g = F_c + (F_s - F_c) e^{-(\dot z / v_s)^2}`. :math:`F_s` counts within :math:`F_c \ldots 5 F_c`, so that the law
-    vanishes with :math:`F_c` alone. :math:`\sigma_2` is one with the joint's damper and therefore never fitted.
+    :math:`g = F_c + (F_s - F_c) e^{-(\dot z / v_s)^2}`. :math:`F_s` counts within :math:`F_c / 5 \ldots 5 F_c`, so that the law
+    vanishes with :math:`F_c` alone; left at zero it is :math:`F_c`, and below it friction grows with speed. :math:`\sigma_2` is
+    one with the joint's damper and therefore never fitted.
     """
 
     sigma0: Scalar = param(unit="N m/rad", default=4000.0, lower=1.0, scale=1000.0)
@@ -64,7 +89,15 @@ class Lugre(AbstractEffect):
 
     @classmethod
     def guesses(cls, system: Any) -> list[AbstractEffect]:
-        return [cls(sigma0=stiff, sigma1=1.0, Fc=1.0, Fs=1.5, vs=0.1) for stiff in (1000.0, 300.0)]
+        return [cls(sigma0=1.0 / d, sigma1=1e-3 / d, Fc=1.0, Fs=1.5, vs=0.1) for d in presliding(system)]
+
+    @classmethod
+    def in_place_of(cls, other: AbstractEffect) -> list[AbstractEffect]:
+        return [
+            cls(sigma0=slope, sigma1=1e-3 * slope, Fc=level, Fs=1.2 * level, vs=speed)
+            for slope, level in slope_and_level(other)
+            for speed in (0.1, 0.03, 0.3)
+        ]
 
     def torque(self, now: Instant) -> Scalar:
         # The state is sigma0 s / Fc.
@@ -72,7 +105,9 @@ class Lugre(AbstractEffect):
         return -self.Fc * (now.state[0] + damped) - self.sigma2 * now.dz
 
     def rate(self, now: Instant) -> tuple[Scalar, ...]:
-        extra = jnp.clip(self.Fs / jnp.maximum(self.Fc, 1e-9), 1.0, 5.0) - 1.0
+        # Below Fc as well as above: a bound at Fs = Fc would hide from a fit that crossed it which way leads back.
+        ratio = jnp.where(self.Fs > 0.0, self.Fs / jnp.maximum(self.Fc, 1e-9), 1.0)
+        extra = jnp.clip(ratio, 0.2, 5.0) - 1.0
         level = 1.0 + extra * jnp.exp(-((now.dz / jnp.maximum(self.vs, 1e-6)) ** 2))
         flow = _flow(now.dz, self.sigma0, self.Fc)
         return (flow - jnp.abs(flow) * now.state[0] / level,)
@@ -97,7 +132,11 @@ class BoucWen(AbstractEffect):
 
     @classmethod
     def guesses(cls, system: Any) -> list[AbstractEffect]:
-        return [cls(sigma, 1.0, 1.5, 0.75) for sigma in (1000.0, 300.0)]
+        return [cls(1.0 / distance, 1.0, 1.5, 0.75) for distance in presliding(system)]
+
+    @classmethod
+    def in_place_of(cls, other: AbstractEffect) -> list[AbstractEffect]:
+        return [cls(slope, level, power, 0.75) for slope, level in slope_and_level(other) for power in (1.5, 1.1)]
 
     def torque(self, now: Instant) -> Scalar:
         return -self.Fc * now.state[0]

@@ -1,0 +1,165 @@
+"""Laws followed along a measured motion: their torque, its derivatives, and the states of those with a memory. No simulation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..compiled import kept_jit
+from ..mechanics import AbstractEffect, Drive, canonical_name
+from ..parameters import ravel, unravel
+from ..records import Record
+from ..signals import choose_intervals, fit_spline
+from ..system import System
+
+FINEST = 5e-4
+"""Longest step [s] for states along a motion: half of the time in which the quickest of them follow."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """The measured motion, smoothed, at the samples: arrays (N,) of t [s], y, dy, x, dx [rad, rad/s], F [N m]."""
+
+    t: np.ndarray
+    y: np.ndarray
+    dy: np.ndarray
+    x: np.ndarray
+    dx: np.ndarray
+    force: np.ndarray
+
+    @property
+    def rows(self) -> tuple[np.ndarray, ...]:
+        """t, y, dy, x, dx."""
+        return self.t, self.y, self.dy, self.x, self.dx
+
+    @property
+    def substeps(self) -> int:
+        """Steps a sample that follow the states of laws."""
+        return max(1, int(np.ceil(float(np.median(np.diff(self.t))) / FINEST - 1e-9)))
+
+
+def motion(record: Record, window: float = 0.1) -> Motion:
+    """Smoothed motion of link and base."""
+    t, zero = record.t, np.zeros(record.samples)
+
+    def smooth(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        if not np.any(values):
+            return zero, zero
+        spline = fit_spline(t, values, t[0], window / choose_intervals(t, values, window))
+        return spline(t), spline(t, 1)
+
+    x, dx = smooth(record.channels.get("x", zero))
+    seen, rate = smooth(record.channels[record.observed_name])
+    y, dy = (seen + x, rate + dx) if record.observed_name == "z" else (seen, rate)
+    return Motion(t, y, dy, x, dx, record.channels.get("F", zero))
+
+
+def torques(system: System, seeds: np.ndarray, m: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """All torque on the link along a motion (N,), and its derivatives (q, N) along ``seeds`` (q, p) of the parameters."""
+    torque, columns = _torques(system, jnp.asarray(ravel(system)), jnp.asarray(seeds), m.rows, m.substeps)
+    return np.asarray(torque), np.asarray(columns)
+
+
+def own_torque(effect: AbstractEffect, system: System, m: Motion) -> np.ndarray:
+    """Torque of one effect of a system like this one along a motion (N,)."""
+    return np.asarray(_own_torque(effect, _joint(system), m.rows, m.substeps))
+
+
+def own_tangents(effect: AbstractEffect, system: System, seeds: np.ndarray, m: Motion) -> tuple[np.ndarray, np.ndarray]:
+    """`own_torque` and its derivatives (q, N) along ``seeds`` (q, p) of the effect's parameters, its states following."""
+    joint, vector = _joint(system), jnp.asarray(ravel(effect))
+    torque, columns = _own_tangents(effect, vector, jnp.asarray(seeds), joint, m.rows, m.substeps)
+    return np.asarray(torque), np.asarray(columns)
+
+
+def own_states(effect: AbstractEffect, system: System, m: Motion) -> tuple[np.ndarray, ...]:
+    """Internal states of a law along a motion, (N,) each."""
+    return tuple(np.asarray(s) for s in _followed(effect, _joint(system), m.rows, m.substeps))
+
+
+def _joint(system: System) -> System:
+    """The joint alone: what an effect sees of a system does not depend on other effects' programs."""
+    return System(system.inertia, system.contact, system.damper, {}, system.observed)
+
+
+@kept_jit
+def _torques(system: System, vector: Any, seeds: Any, rows: Any, substeps: int) -> tuple[Any, Any]:
+    t, y, dy, x, dx = rows
+    own = jnp.zeros((len(system.state_names) - 2, t.shape[0]))
+    if own.shape[0]:
+        names = sorted(system.effects)
+        own = jnp.stack([s for n in names for s in _states(system.effects[n], _joint(system), rows, substeps)])
+
+    def along(vector: Any) -> Any:
+        known = unravel(system, vector)
+
+        def at(t: Any, y: Any, dy: Any, x: Any, dx: Any, own: Any) -> Any:
+            state = (y, dy, *(own[i] for i in range(own.shape[0])))
+            return known.torques(known.instant(t, state, Drive(x, dx)), state)[0]
+
+        return jax.vmap(at, in_axes=(0, 0, 0, 0, 0, 1))(t, y, dy, x, dx, own)
+
+    torque = along(vector)
+    return torque, jax.vmap(lambda e: jax.jvp(along, (vector,), (e,))[1])(seeds)
+
+
+def _alone(effect: AbstractEffect, joint: System, rows: Any, substeps: int) -> Any:
+    beside = System(joint.inertia, joint.contact, joint.damper, {canonical_name(effect): effect}, joint.observed)
+    states = _states(effect, joint, rows, substeps)
+
+    def at(t: Any, y: Any, dy: Any, x: Any, dx: Any, own: Any) -> Any:
+        now = beside.instant(t, (y, dy), Drive(x, dx))
+        return effect.torque(now.seen_by(own)) + jnp.zeros_like(y)
+
+    t, y, dy, x, dx = rows
+    return jax.vmap(at)(t, y, dy, x, dx, states)
+
+
+_own_torque = kept_jit(_alone)
+
+
+@kept_jit
+def _own_tangents(effect: AbstractEffect, vector: Any, seeds: Any, joint: System, rows: Any, substeps: int) -> tuple[Any, Any]:
+    def along(vector: Any) -> Any:
+        return _alone(unravel(effect, vector), joint, rows, substeps)
+
+    return along(vector), jax.vmap(lambda e: jax.jvp(along, (vector,), (e,))[1])(seeds)
+
+
+@kept_jit
+def _followed(effect: AbstractEffect, joint: System, rows: Any, substeps: int) -> tuple[Any, ...]:
+    return _states(effect, joint, rows, substeps)
+
+
+def _states(effect: AbstractEffect, joint: System, rows: Any, substeps: int) -> tuple[Any, ...]:
+    """Internal states by Heun's method, the motion straight between its samples in ``substeps`` parts."""
+    if not effect.states:
+        return ()
+
+    def instant(at: Any) -> Any:
+        t, y, dy, x, dx = at
+        return joint.instant(t, (y, dy), Drive(x, dx))
+
+    def step(own: Any, pair: Any) -> tuple[Any, Any]:
+        a, b = pair
+
+        def part(k: Any, own: Any) -> Any:
+            left, right = (tuple(u + (v - u) * ((k + i) / substeps) for u, v in zip(a, b)) for i in (0.0, 1.0))
+            h = right[0] - left[0]
+            first = effect.rate(instant(left).seen_by(own))
+            tried = tuple(s + h * r for s, r in zip(own, first))
+            second = effect.rate(instant(right).seen_by(tried))
+            return tuple(s + 0.5 * h * (p + q) for s, p, q in zip(own, first, second))
+
+        for k in range(substeps):
+            own = part(float(k), own)
+        return own, own
+
+    begin = effect.start(instant(tuple(v[0] for v in rows)))
+    begin = tuple(jnp.asarray(s, dtype=rows[1].dtype) for s in begin)
+    _, path = jax.lax.scan(step, begin, (tuple(v[:-1] for v in rows), tuple(v[1:] for v in rows)))
+    return tuple(jnp.concatenate([b[None], p]) for b, p in zip(begin, path))

@@ -1,0 +1,85 @@
+"""Laws of a family with internal states, as they would stand in a model: which the quick look puts first, and from where."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ..mechanics import AbstractEffect
+from ..parameters import specs
+from ..system import System
+from .evidence import AS_WELL, demanded
+from .tuning import Rival, Tuned, apart, lead, tune
+from .workbench import Trial, Workbench, strengths
+
+
+@dataclass(frozen=True)
+class Member:
+    """A law of a family as tuned beside a model: its ``name``, the ``beside`` effects that stay, ``lead`` its evidence in the
+    weak form, and ``kin``, the law of its family whose place it takes."""
+
+    name: str
+    beside: dict[str, AbstractEffect]
+    tuned: Tuned
+    lead: float
+    kin: str | None
+
+
+def families(bench: Workbench) -> dict[str, list[str]]:
+    """Names of the laws with internal states by family, the simplest of each first."""
+    found: dict[str, list[str]] = {}
+    for name in sorted(bench.laws, key=lambda n: len(specs(bench.laws[n]()))):
+        law = bench.laws[name]
+        if law.states and law.family:
+            found.setdefault(law.family, []).append(name)
+    return found
+
+
+def members(bench: Workbench, trial: Trial, names: Sequence[str], rivals: Sequence[Rival] = ()) -> list[Member]:
+    """The laws of one family that may stand in a model, the likeliest first.
+
+    Where there is none yet, it takes the place of dry friction in the joint, which it contains. It has to be ahead of each of
+    the ``rivals`` beside that friction; where there is no friction yet, by more than the share within which others do as
+    well, since dry friction gives over no distance at all. Where there is one, its kin take its place unless the quick look
+    puts them behind it, alone or with one of the rivals beside it.
+    """
+    kin = next((n for n in names if n in trial.names), None)
+    beside, system, free = _without(bench, trial, kin)
+    parted = [apart(e, strengths(e)) for n, e in bench.effects(trial).items() if n not in beside and n != kin]
+    if kin is not None:
+        present = tune(bench.quick, system, free, [trial.system.effects[kin]])
+        parted = [([present.effect], present.count)]
+    there = [effect for effects, _ in parted for effect in effects], sum(count for _, count in parted)
+    rivals = [([*there[0], *effects], there[1] + count) for effects, count in (([], 0), *rivals)]
+    found: list[Member] = []
+    for name in names:
+        if name == kin:
+            continue
+        law = bench.laws[name]
+        variants = law.guesses(system) if kin is None else law.in_place_of(trial.system.effects[kin]) or law.guesses(system)
+        tuned = tune(bench.quick, system, free, variants)
+        ahead = lead(bench.quick, free, tuned, system, rivals)
+        least = -demanded(bench) if kin else demanded(bench)
+        if not parted:
+            least = max(least, (1.0 - AS_WELL) * lead(bench.quick, free, tuned, system, [([], 0)]))
+        if ahead > least:
+            found.append(Member(name, beside, tuned, ahead, kin))
+        elif kin is None and not found:
+            break  # where the simplest of a family says nothing, its kin do not either
+    return sorted(found, key=lambda m: -m.lead)
+
+
+def may_replace(bench: Workbench, trial: Trial, name: str, others: Sequence[AbstractEffect]) -> list[bool]:
+    """Whether the quick look leaves open that each of some static laws would do in the place of a fitted one of a family."""
+    _, system, free = _without(bench, trial, name)
+    tuned = tune(bench.quick, system, free, [trial.system.effects[name]])
+    return [lead(bench.quick, free, tuned, system, [apart(e, strengths(e))]) < demanded(bench) for e in others]
+
+
+def _without(bench: Workbench, trial: Trial, kin: str | None) -> tuple[dict[str, AbstractEffect], System, tuple[str, ...]]:
+    """The effects of a model that stay when a law takes the place of its kin or of dry friction; the model left; what is free."""
+    full = trial.system
+    here = bench.effects(trial)
+    beside = {n: e for n, e in here.items() if n != kin and (kin or not (e.slides and e.port == "joint"))}
+    system = System(full.inertia, full.contact, full.damper, beside, full.observed)
+    return beside, system, tuple(n for n in trial.free if "." not in n or n.partition(".")[0] in beside)

@@ -1,0 +1,159 @@
+"""Shape and strength of a law with a memory, tuned on the measured motion before any simulation is fitted.
+
+How far friction gives before it slips, or how round its knee is, does not show at zero strength, so no score test can rank such a
+law. The weak-form regression of the quick look can: the law's state is followed along the measured motion, and its
+parameters move until its torque explains what the model leaves, the joint's own parameters moving with them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from ..mechanics import AbstractEffect
+from ..parameters import Spec, ravel, specs, unravel, values, with_values
+from ..system import System
+from .along_motion import own_tangents
+from .quick_look import QuickLook, whitener
+
+ROUNDS, EVALUATIONS = 2, 8
+"""Times the joint is moved, and evaluations of the law between."""
+Rival = tuple[list[AbstractEffect], int]
+"""Effects whose torques, each at any strength, are to explain what is missing, and how many parameters that takes."""
+REACH = np.log(30.0)
+"""Logarithm of the factor by which a positive parameter may move in one round."""
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """A law as tuned: ``effect``; ``system``, the model with its free parameters moved along; ``left`` (R,) what both leave of
+    the weak form; ``count`` free parameters of the law."""
+
+    effect: AbstractEffect
+    system: System
+    left: np.ndarray
+    count: int
+
+
+def tune(look: QuickLook, system: System, free: tuple[str, ...], variants: list[AbstractEffect]) -> Tuned:
+    """The likeliest of some variants of a law, tuned beside a model.
+
+    Parameters
+    ----------
+    look : the record
+    system, free : the model without the law, and the parameters in which it can still move
+    variants : points to start from, each at any strength
+    """
+    effect = sized(look, system, free, look.choose(system, free, variants)[0])
+    left = np.zeros(0)
+    for _ in range(ROUNDS):
+        effect, system, left = _round(look, system, free, effect)
+    return Tuned(effect, system, left, len(_open(effect)))
+
+
+def lead(look: QuickLook, free: tuple[str, ...], tuned: Tuned, start: System, rivals: Sequence[Rival]) -> float:
+    """Evidence of the weak form for a tuned law against the best of its ``rivals``: fall of the information criterion.
+
+    Rivals are judged about the model the law was tuned from, ``start``, and about the one it was tuned to.
+    """
+    white = whitener(tuned.left)
+    own, rows = float(np.sum(white(tuned.left) ** 2)) + 1e-300, white(tuned.left).size
+    best = np.inf
+    for system in (start, tuned.system):
+        left, by = look.missing(system, free)
+        for effects, count in rivals:
+            design = white(np.column_stack([by, *(look.column(e, system) for e in effects)]))
+            target = white(left)
+            rest = target - design @ np.linalg.lstsq(design, target, rcond=None)[0]
+            fall = rows * float(np.log((np.sum(rest**2) + 1e-300) / own)) + (count - tuned.count) * float(np.log(rows))
+            best = min(best, fall)
+    return best
+
+
+def apart(effect: AbstractEffect, strengths: Iterable[str]) -> Rival:
+    """A law that is linear in its strengths as a rival: one effect for each of them, at the size of a typical change."""
+    names, described = list(strengths), specs(effect)
+    null = {n: float(described[n].null or 0.0) for n in names}
+    return [with_values(effect, {**null, n: null[n] + float(described[n].scale or 1.0)}) for n in names], len(names)
+
+
+def sized(look: QuickLook, system: System, free: tuple[str, ...], effect: AbstractEffect) -> AbstractEffect:
+    """The law at the strength that the record asks for, its shape kept: all of its torques grow together."""
+    left, by = look.missing(system, free)
+    design = np.column_stack([by, look.column(effect, system)])
+    white = whitener(left - design @ np.linalg.lstsq(design, left, rcond=None)[0])
+    factor = float(np.linalg.lstsq(white(design), white(left), rcond=None)[0][-1])
+    if not np.isfinite(factor) or factor <= 0.0:
+        return effect
+    torques = {n: v * factor for n, v in values(effect).items() if specs(effect)[n].unit.startswith(("N m", "kg m^2"))}
+    return with_values(effect, torques)
+
+
+def _open(effect: AbstractEffect) -> dict[str, Spec]:
+    return {n: s for n, s in specs(effect).items() if not s.fixed}
+
+
+def _round(
+    look: QuickLook, system: System, free: tuple[str, ...], effect: AbstractEffect
+) -> tuple[AbstractEffect, System, np.ndarray]:
+    left, by = look.missing(system, free)
+    design = np.column_stack([by, look.column(effect, system)])
+    white = whitener(left - design @ np.linalg.lstsq(design, left, rcond=None)[0])
+    basis = np.linalg.qr(white(by))[0]
+
+    def project(rows: np.ndarray) -> np.ndarray:
+        rows = white(rows)
+        return rows - basis @ (basis.T @ rows)
+
+    target = project(left)
+    described, present = _open(effect), values(effect)
+    index = [list(specs(effect)).index(n) for n in described]
+    # What is positive and has no upper bound moves by factors.
+    factors = np.array([s.lower >= 0.0 and not np.isfinite(s.upper) for s in described.values()])
+    low, high = (np.array([getattr(s, side) for s in described.values()]) for side in ("lower", "upper"))
+    begin = np.array([present[n] for n in described])
+    begin = np.where(factors, np.maximum(begin, np.maximum(low, 1e-9)), begin)
+    size = np.where(factors, begin, 1.0)
+    nearest = np.maximum(np.where(factors, low, 0.0) / size, np.exp(-REACH))
+    bounds = np.where(factors, np.log(nearest), low), np.where(factors, REACH, high)
+    first = np.where(factors, 0.0, np.clip(begin, bounds[0], bounds[1]))
+    full = np.array(ravel(effect))
+
+    def at(p: np.ndarray) -> tuple[AbstractEffect, np.ndarray]:
+        sizes = np.where(factors, begin * np.exp(np.where(factors, p, 0.0)), p)
+        vector = full.copy()
+        vector[index] = sizes
+        return unravel(effect, [np.asarray(v) for v in vector]), np.where(factors, sizes, 1.0)
+
+    seen: dict[bytes, tuple[np.ndarray, np.ndarray]] = {}
+
+    def both(p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        if p.tobytes() not in seen:
+            law, chain = at(p)
+            seeds = np.zeros((len(index), full.size))
+            seeds[np.arange(len(index)), index] = chain
+            # What cannot be followed explains nothing.
+            torque, columns = (np.nan_to_num(v, posinf=0.0, neginf=0.0) for v in own_tangents(law, system, seeds, look.motion))
+            seen[p.tobytes()] = project(look.average(torque)) - target, project(look.average(columns).T)
+        return seen[p.tobytes()]
+
+    found = least_squares(lambda p: both(p)[0], first, jac=lambda p: both(p)[1], bounds=bounds, max_nfev=EVALUATIONS)
+    effect = at(found.x)[0]
+    rest = left - look.column(effect, system)
+    change = np.linalg.lstsq(white(by), white(rest), rcond=None)[0]
+    return effect, _moved(system, free, change), rest - by @ change
+
+
+def _moved(system: System, free: tuple[str, ...], change: np.ndarray) -> System:
+    present, described = values(system), specs(system)
+    moved = {}
+    for name, step in zip(free, change):
+        value, spec = present[name], described[name]
+        wanted = value + float(step)
+        if spec.positive and value > 0.0:  # a regression's step is no measure far away
+            wanted = float(np.clip(wanted, 0.5 * value, 2.0 * value))
+        moved[name] = float(np.clip(wanted, spec.lower, spec.upper))
+    return with_values(system, moved)
