@@ -138,3 +138,8 @@ def unit_text(unit: str, *, translational: bool = False, per_inertia: bool = Fal
         text = _PER_INERTIA.get(unit, unit)
         return text.replace("rad", "m") if translational else text
     return _TRANSLATIONAL.get(unit, unit) if translational else unit
+
+
+def channel_unit(name: str, *, translational: bool = False) -> str:
+    """The unit of a channel of a record: of a force for ``F`` and ``T``, of a motion for the others."""
+    return unit_text("N m" if name in ("F", "T") else "rad", translational=translational)

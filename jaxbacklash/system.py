@@ -59,13 +59,12 @@ class System(eqx.Module):
     def slides(self) -> tuple[str, ...]:
         """Ports at which dry friction can hold the link, ``"joint"`` before ``"ground"``.
 
-        None where the transmitted torque is observed: that of a joint that sticks is not a function of the state, so the
-        sign of the speed stays smoothed there.
+        Not the joint where the transmitted torque is observed: that of a joint that sticks is not a function of the state, so
+        the sign of the speed stays smoothed there. Friction at the ground is no part of that torque.
         """
-        if self.observed == "T":
-            return ()
         ports = {effect.port for effect in self.effects.values() if effect.slides}
-        return tuple(port for port in ("joint", "ground") if port in ports and port not in self.smoothed)
+        able = ("ground",) if self.observed == "T" else ("joint", "ground")
+        return tuple(port for port in able if port in ports and port not in self.smoothed)
 
     @property
     def switches(self) -> bool:

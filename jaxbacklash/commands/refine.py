@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import __version__
-from ..criticism import Findings, Refinement, where_it_fails
+from ..criticism import Findings, Refinement, Surface, where_it_fails
 from ..criticism import refine as refine_record
 from ..criticism.ranking import plain
 from ..errors import NoAnswer
@@ -77,8 +77,9 @@ def deliver(found: Refinement, folder: Path | None, machine: bool, tell: Any) ->
         about = {"translational": fit.translational, "per_inertia": fit.per_inertia}
         title = f"{fit.records[0].summary()}\n{result['verdict_text']}"
         write_text(folder / "model.toml", dump_model(fit.system, heading=title, **about))
-        if last is not None and last.surface is not None and last.surface.share > WORTH_A_TABLE:
-            stopgap = last.surface.system.with_effects(last.surface.effect())
+        surface = _worth_a_table(found, last)
+        if surface is not None:
+            stopgap = surface.system.with_effects(surface.effect())
             title += "\nThe learned torque is a table read from this record: a stopgap, not physics."
             write_text(folder / "model-with-learned-torque.toml", dump_model(stopgap, heading=title, **about))
             written.insert(2, "model-with-learned-torque.toml")
@@ -99,9 +100,15 @@ def text(found: Refinement, last: Findings | None) -> str:
     if last is None:
         return str(found)
     lines = [str(found), "", "where it still fails", *(f"  {sentence}" for sentence in last.sentences)]
-    if last.surface is not None and last.surface.share > WORTH_A_TABLE:
+    if _worth_a_table(found, last) is not None:
         lines.append("  With --out, model-with-learned-torque.toml holds that torque as a table: a stopgap, not physics.")
     return "\n".join(lines)
+
+
+def _worth_a_table(found: Refinement, last: Findings | None) -> Surface | None:
+    """What is missing, where it can be offered as a table: a force missing from a measured one is no torque on the link."""
+    surface = None if last is None or found.fit.records[0].kind == "transmitted" else last.surface
+    return surface if surface is not None and surface.share > WORTH_A_TABLE else None
 
 
 def _look(found: Refinement, stage: int, tell: Any) -> Findings | None:

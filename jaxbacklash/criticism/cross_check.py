@@ -16,6 +16,7 @@ from ..compiled import kept_jit
 from ..effects import Contact
 from ..errors import BadInput, NoAnswer
 from ..fitting import Fit
+from ..fitting.loop import read_plateau
 from ..mechanics import Drive
 from ..signals import choose_intervals, fit_spline
 from ..skeleton import Skeleton, Skeletons, skeleton
@@ -23,6 +24,8 @@ from ..system import System
 
 AGREE = 3.0
 """Standard errors of the difference within which two methods agree."""
+READING = 0.03
+"""Share of its width to which a plateau can be read off a loop."""
 NEGLIGIBLE = 0.005
 """Relative difference of play and stiffness that nobody would call disagreement, whatever the error bars say."""
 JUDGED = ("backlash", "stiffness")
@@ -41,6 +44,7 @@ class CrossCheck:
     text: str
     why: str = ""
     apart: tuple[tuple[str, str, float], ...] = ()
+    loop: dict[str, Any] | None = None
 
     def as_json(self) -> dict[str, Any]:
         """The entries ``hilbert``, ``wavelet``, ``agrees``, ``text``, ``masked_fraction`` of result.json."""
@@ -49,6 +53,8 @@ class CrossCheck:
             for method in self.skeletons.methods:
                 found[method.method] = {name: value.as_json() for name, value in method.parameters.items()}
             found["masked_fraction"] = self.skeletons.masked_fraction
+        if self.loop is not None:
+            found["loop"] = self.loop
         found |= {"agrees": self.agrees, "text": self.text}
         return found | ({"why": self.why} if self.why else {})
 
@@ -56,6 +62,8 @@ class CrossCheck:
 def cross_check(fit: Fit) -> CrossCheck:
     """Set the Hilbert and wavelet skeletons of the fit's first record beside it. Never raises for a record it cannot use."""
     record = fit.records[0]
+    if record.kind == "transmitted":
+        return beside_loop(fit)
     if not isinstance(fit.system.contact, Contact):
         return _silent("the model has no play, so there is none to compare")
     try:
@@ -84,6 +92,30 @@ def cross_check(fit: Fit) -> CrossCheck:
         missing = _left_out(found)
         return CrossCheck(found, True, f"{agree}, with errors that allow for this: {missing}." if missing else f"{agree}.")
     return CrossCheck(found, False, _broken(fit, found, tuple(apart)), "", tuple(apart))
+
+
+def beside_loop(fit: Fit) -> CrossCheck:
+    """Read the play off a force loop without a model, and off the fit's prediction in the same way.
+
+    Both count the travel over which less than a tenth of the sliding force is carried, so a contact that begins softly makes
+    them differ from the fitted play, but not from one another where the model is right.
+    """
+    record = fit.records[0]
+    x = record.channels["x"]
+    unit = "m" if fit.translational else "rad"
+    known, told = read_plateau(x, record.channels["T"]), read_plateau(x, fit.score.predicted)
+    loop: dict[str, Any] = {"backlash": known.as_json(unit), "backlash_of_model": told.as_json(unit)}
+    if known.median is None or told.median is None:
+        why = "the force does not pass from one side to the other, so there is no play to read off"
+        return CrossCheck(None, None, f"The force loop cannot judge this fit: {why}.", why, (), loop)
+    spread = max(float(np.hypot(known.stderr or 0.0, told.stderr or 0.0)), READING * known.median)
+    distance = abs(known.median - told.median)
+    words = f"Read off the force loop, the joint carries next to nothing over {known.median:.3g} {unit} of travel"
+    if distance < AGREE * spread:
+        return CrossCheck(None, True, f"{words}, and so does the model's: {told.median:.3g} {unit}.", "", (), loop)
+    side = "wider" if told.median > known.median else "narrower"
+    words += f", the model's over {told.median:.3g} {unit}: the contact does not begin as the model has it, and the fitted play"
+    return CrossCheck(None, False, f"{words} is {side} than what is seen.", "", (("loop", "backlash", distance / spread),), loop)
 
 
 def _silent(why: str, found: Skeletons | None = None) -> CrossCheck:

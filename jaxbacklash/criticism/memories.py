@@ -41,8 +41,10 @@ def members(bench: Workbench, trial: Trial, names: Sequence[str], rivals: Sequen
     Where there is none yet, it takes the place of dry friction in the joint, which it contains. It has to be ahead of each of
     the ``rivals`` beside that friction; where there is no friction yet, by more than the share within which others do as
     well, since dry friction gives over no distance at all. Where there is one, its kin take its place unless the quick look
-    puts them behind it, alone or with one of the rivals beside it.
+    puts them behind it, alone or with one of the rivals beside it. None where the link's motion is not in the record.
     """
+    if bench.quick.blind:
+        return []
     kin = next((n for n in names if n in trial.names), None)
     beside, system, free = _without(bench, trial, kin)
     parted = [apart(e, strengths(e)) for n, e in bench.effects(trial).items() if n not in beside and n != kin]
@@ -71,6 +73,8 @@ def members(bench: Workbench, trial: Trial, names: Sequence[str], rivals: Sequen
 
 def may_replace(bench: Workbench, trial: Trial, name: str, others: Sequence[AbstractEffect]) -> list[bool]:
     """Whether the quick look leaves open that each of some static laws would do in the place of a fitted one of a family."""
+    if bench.quick.blind:
+        return [True] * len(others)
     _, system, free = _without(bench, trial, name)
     tuned = tune(bench.quick, system, free, [trial.system.effects[name]])
     return [lead(bench.quick, free, tuned, system, [apart(e, strengths(e))]) < demanded(bench) for e in others]

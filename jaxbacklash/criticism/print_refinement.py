@@ -7,6 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from ..fitting.print_fit import line
+from ..parameters import channel_unit
 from .ranking import of_stage, table
 
 if TYPE_CHECKING:
@@ -61,10 +62,9 @@ def text(refinement: Refinement) -> str:
 
 def noise_lines(fit: Fit) -> list[str]:
     """The noise found in the record's channels."""
-    unit = "m" if fit.translational else "rad"
-    moved_by = fit.input_noise[0]
-    more = f", of {fit.records[0].input_name or 'x'} {moved_by:.3g} {unit}" if moved_by else ""
-    return [f"  noise of {fit.records[0].observed_name} {fit.noise[0]:.3g} {unit}{more}"]
+    seen, driver, moved_by = fit.records[0].observed_name, fit.records[0].input_name or "x", fit.input_noise[0]
+    more = f", of {driver} {moved_by:.3g} {channel_unit(driver, translational=fit.translational)}" if moved_by else ""
+    return [f"  noise of {seen} {fit.noise[0]:.3g} {channel_unit(seen, translational=fit.translational)}{more}"]
 
 
 def alternatives_sentence(refinement: Refinement) -> str:

@@ -18,6 +18,7 @@ from ..parameters import specs, values
 from ..precision import require_double_precision
 from ..system import System
 from .candidates import Candidate, rank
+from .evidence import gain
 from .refine import Stage
 from .search import WHOLE, Search
 from .workbench import Workbench, correlation_length
@@ -94,8 +95,20 @@ def rank_effects(fit: Fit, *, window: float = SCORE_WINDOW) -> Ranking:
     bare = System(full.inertia, full.contact, full.damper, {}, full.observed)
     own = tuple(name for name in fit.free if name.partition(".")[0] not in full.effects)
     bench = Workbench(fit.records[0], bare, own, window)
-    trial = Search(bench).settle(bench.fit(dict(full.effects), joint=full, patience=WHOLE))
-    return judged(fit.score, trial.cost, rank(bench, trial))
+    search = Search(bench)
+    trial = search.settle(bench.fit(dict(full.effects), joint=full, patience=WHOLE))
+    ranking = {c.name: c for c in rank(bench, trial)}
+    evidence = {}
+    for name in () if bench.grips(trial.names) else bench.outright:
+        # Sensitivities at a link that floats say nothing of one that is held: it is really refitted.
+        after = search.add(trial, Candidate(name, bench.laws[name](), 0.0, trial.misfit, {}))
+        if np.isfinite(after.cost):
+            predicted = trial.misfit * float(np.sqrt(after.cost / trial.cost))
+            fall = 2.0 * (trial.cost - after.cost)
+            moved = {n: v for n, v in after.value.items() if n in trial.free}
+            ranking[name] = Candidate(name, after.system.effects[name], fall, predicted, moved)
+            evidence[name] = gain(trial, after)
+    return judged(fit.score, trial.cost, tuple(ranking.values()), evidence)
 
 
 def of_stage(stage: Stage, following: Stage | None = None) -> Ranking:

@@ -13,18 +13,18 @@ import numpy as np
 from ..errors import BadInput
 from ..fitting.equation_error import Start
 from ..fitting.estimates import judge
-from ..fitting.fit import SCORE_WINDOW, TIES, Fit, prepare, silent
+from ..fitting.fit import ABSOLUTE, SCORE_WINDOW, TIES, Fit, prepare, silent
 from ..fitting.score import Score, score
 from ..fitting.setup import base_system, first_guess, free_names
 from ..fitting.shooting import Problem, Unknowns
 from ..precision import require_double_precision
-from ..records import Record
+from ..records import Record, oriented
 from ..system import System
 from .candidates import Candidate
 from .experiment import Experiment, separate
 from .search import Search
 from .verdict import Verdict, judge_rest
-from .workbench import Trial, Workbench, pruned
+from .workbench import Trial, Workbench, adequate, pruned
 
 SEPARATED = 2
 """Alternatives for which an experiment is looked for."""
@@ -106,6 +106,8 @@ def refine(
         JAX is in single precision.
     """
     require_double_precision("refine")
+    record = oriented(record)
+    heldout = None if heldout is None else oriented(heldout)
     if heldout is not None and heldout.kind != record.kind:
         raise BadInput(f"{heldout.path}: is a {heldout.kind} record, {record.path} a {record.kind} record; wanted two of a kind")
     clock = {"start": time.perf_counter()}
@@ -122,7 +124,7 @@ def refine(
     clock["search"] = time.perf_counter()
 
     progress("scoring predictions", 0.85)
-    per_inertia = inertia is None and record.kind != "force" and model != "given"
+    per_inertia = inertia is None and record.kind not in ABSOLUTE and model != "given"
     judged = _Judge(bench, heldout, model, per_inertia, translational, start)
     stages = tuple(Stage(s.added, s.dropped, judged(s.trial), s.ranking, s.evidence) for s in steps)
     clock["score"] = time.perf_counter()
@@ -157,7 +159,10 @@ class _Judge:
         scales = trial.scales[:q]
         scaled = np.linalg.pinv(_unit(trial.schur[:q, :q]), rcond=1e-14, hermitian=True)
         sizes = 1.0 / np.sqrt(np.maximum(np.diag(trial.schur)[:q], 1e-300))
-        covariance = max(1.0, trial.misfit**2) * scaled * np.outer(sizes * scales, sizes * scales)
+        excess = max(1.0, trial.misfit**2)
+        if bench.grips(trial.names) and not adequate(trial):
+            excess *= trial.correlation  # the misfit of one run is of one piece
+        covariance = excess * scaled * np.outer(sizes * scales, sizes * scales)
         stderr = dict(zip(free, np.sqrt(np.maximum(np.diag(covariance), 0.0))))
         plain = pruned(trial)
         records = (bench.record,)
@@ -173,7 +178,7 @@ class _Judge:
     def _predict(self, problem: Problem) -> Score:
         assert self.heldout is not None
         bench = self.bench
-        windows, layout, group = prepare(bench.base, [self.heldout], bench.window, intervals=bench.windows.intervals)
+        windows, layout, group = prepare(bench.pace, [self.heldout], bench.window, intervals=bench.windows.intervals)
         if self.bench.noise_factor != 1.0:
             factor = self.bench.noise_factor
             windows = eqx.tree_at(lambda w: (w.weight, w.drop), windows, (windows.weight / factor, windows.drop / factor))

@@ -11,6 +11,7 @@ from ..fitting import Fit
 from .failures import Dependence, depends
 from .latent import Latent, missing_torque
 from .surface import Surface, explain_torque
+from .transmitted import explain_force, missing_force
 from .words import NOISE, headline, sentences
 
 
@@ -77,11 +78,14 @@ def where_it_fails(fit: Fit, latent: Latent | None = None, surface: Surface | No
     NoAnswer
         The missing torque cannot be found.
     """
-    latent = missing_torque(fit) if latent is None else latent
+    seen = fit.records[0].kind == "transmitted"
+    if latent is None:
+        latent = missing_force(fit) if seen else missing_torque(fit)
     if not latent.evident:
         asked = depends(latent, latent.torque, _misfit(fit, latent))
         return Findings((NOISE.format(**_numbers(fit, latent)),), tuple(asked), latent, None, fit.score.rms, fit.score.median)
-    surface = explain_torque(latent) if surface is None else surface
+    if surface is None:
+        surface = explain_force(latent) if seen else explain_torque(latent)
     asked = depends(latent, surface.torque, _misfit(fit, latent))
     told = (headline(fit, surface), *sentences(surface, asked))
     return Findings(told, tuple(asked), latent, surface, fit.score.rms, fit.score.median)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
@@ -80,7 +81,8 @@ class Search:
                 simpler = values(present.pop(name))
                 taken = max(abs(simpler[n]) for n in strengths(self.bench.laws[name]()))
                 effect = with_values(effect, {n: values(effect)[n] + taken for n in strengths(effect)})
-        key = (frozenset(present) | {candidate.name}, before.tied)
+        names = frozenset(present) | {candidate.name}
+        key = (names, before.tied or self.bench.grips(names))
         if key not in self.known:
             effects = {**present, candidate.name: effect}
             self._keep(self.joined(effects, before) if before.tied else self.bench.fit(effects, before))
@@ -104,10 +106,11 @@ class Search:
 
     def without(self, before: Trial, name: str) -> Trial:
         """The model without one of its effects, fitted from the model with it unless what is known of it is near that."""
-        key = (before.names - {name}, before.tied)
+        names = before.names - {name}
+        key = (names, before.tied and self.bench.grips(names) == self.bench.grips(before.names))
         if key not in self.known or self.known[key].cost - before.cost > significance(before, name) ** 2:
             effects = {n: e for n, e in self.bench.effects(before).items() if n != name}
-            self._keep(self.bench.fit(effects, before, tied=before.tied))
+            self._keep(self.bench.fit(effects, before, tied=key[1]))
         return self.known[key]
 
     def run(self) -> list[Step]:
@@ -189,7 +192,7 @@ class Search:
         """One effect of the last model after the other replaced by what else would do: the better path, and what does as well."""
         level: dict[tuple[str, ...], Trial] = {}
         final = steps[-1].trial
-        if not final.names or not final.tied:
+        if not final.names or not final.tied or not adequate(final):
             return steps, level
         for name in sorted(final.names):
             for other in self.instead(steps, name):
@@ -282,7 +285,12 @@ class Search:
             tried[c.name] = self.add(current, c)
             if not looked and not explained(tried[c.name]):
                 tried, looked = tried | self.memories(current, ranking), True
-        return tried
+        for name in self.bench.outright:
+            if name not in tried and not self.bench.grips(current.names):
+                # A link that floats says nothing of one that is held: friction at the ground is tried whatever its rank.
+                self.progress(f"trying {name}", 0.4)
+                tried[name] = self.add(current, Candidate(name, self.bench.laws[name](), 0.0, current.misfit, {}))
+        return {name: trial for name, trial in tried.items() if math.isfinite(trial.criterion)}
 
     def finished(self, current: Trial, tried: dict[str, Trial]) -> dict[str, Trial]:
         """The same candidates, those fitted to the end that lie close to the best."""

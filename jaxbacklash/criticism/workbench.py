@@ -14,12 +14,13 @@ from typing import Any
 import equinox as eqx
 import numpy as np
 
-from ..fitting.fit import ADEQUATE, TIES, freedom, prepare, tie_windows
+from ..fitting.fit import ADEQUATE, LOOSE, TIES, freedom, prepare, tie_windows
+from ..fitting.held import held, search_held
 from ..fitting.levenberg import ArrowLevenbergMarquardt, minimise
-from ..fitting.setup import first_guess, free_names, make_problem
+from ..fitting.setup import first_guess, free_names, held_system, make_problem
 from ..fitting.shooting import Problem, Unknowns
 from ..fitting.windows import Layout, Windows
-from ..mechanics import AbstractEffect, catalogue
+from ..mechanics import AbstractEffect, canonical_name, catalogue
 from ..parameters import specs, values, with_values
 from ..records import Record
 from ..system import System
@@ -69,6 +70,14 @@ class Trial:
         return 2.0 * self.cost + self.penalty
 
 
+@dataclass(frozen=True)
+class Ended:
+    """Where a search ended: ``value`` and ``stats`` as those of an optimistix solution."""
+
+    value: Unknowns
+    stats: dict[str, Any]
+
+
 class Workbench:
     """Fits any model of a record, the joint and some effects, without compiling anything anew.
 
@@ -87,8 +96,11 @@ class Workbench:
         self.record, self.base, self.base_free, self.window = record, base, tuple(base_free), window
         self.windows: Windows
         self.layout: Layout
-        least = 0 if beside is None else prepare(base, [beside], window)[0].intervals
-        self.windows, self.layout, self.group = prepare(base, [record], window, intervals=least)
+        self.outright = gripping() if record.kind == "transmitted" else ()
+        self.gripped = with_friction(record, base, self.base_free, self.outright)
+        self.pace = self.gripped or base
+        least = 0 if beside is None else prepare(self.pace, [beside], window)[0].intervals
+        self.windows, self.layout, self.group = prepare(self.pace, [record], window, intervals=least)
         self.noise_factor = 1.0
         self.laws = {n: c for n, c in catalogue().items() if c.catalogued and applicable(c, base)}
         self.static = {n: c for n, c in self.laws.items() if not c.states}
@@ -134,7 +146,15 @@ class Workbench:
         followed : take internal states that ``start`` does not have from the laws followed along the measured motion
         """
         begin = joint if joint is not None else (self.base if start is None else start.system)
+        grips = [name for name in effects if name in self.outright]
+        if grips and self.gripped is not None and joint is None and (start is None or not self.grips(start.names)):
+            # Far from anything that the joint alone could tell: the force loop says where to start.
+            begin = self.gripped
+            effects = {**effects, **{name: begin.effects[name] for name in grips}}
         problem, free = self.problem(effects, begin)
+        if held(problem.system):
+            self.fits += 1
+            return self._run(problem, frozenset(effects), free, patience)
         unknowns = first_guess(problem)
         if start is not None:
             same = start.system.state_names == problem.system.state_names
@@ -158,12 +178,26 @@ class Workbench:
         hidden = [np.interp(t0, m.t, s) for n in sorted(effects) for s in own_states(effects[n], joint, m)]
         return np.stack([*np.asarray(starts)[:2], *hidden])
 
+    def _run(self, problem: Problem, names: frozenset[str], free: tuple[str, ...], patience: int) -> Trial:
+        """The fit of a link that friction holds: always one trajectory."""
+        unknowns, seen, steps = search_held(problem, np.zeros(problem.directions.shape[1]), limit=patience)
+        count = freedom(unknowns, self.windows, tied=True)
+        if np.sqrt(2.0 * float(seen["cost"]) / count) < LOOSE:
+            _, solution, taken = tie_windows(problem, unknowns, TIES[0], limit=patience)
+            if float(solution.stats["cost"]) < float(seen["cost"]):
+                unknowns, seen, steps = solution.value, solution.stats, taken
+        return self._trial(problem, Ended(unknowns, {**seen, "steps": steps}), names, free, True, patience)
+
     def look(self, problem: Problem, unknowns: Unknowns) -> tuple[np.ndarray, np.ndarray, float, np.ndarray]:
         """Information about all columns (q, q), their score (q,), the cost, and the columns' scales (q,), at a point."""
         still = Unknowns(np.zeros(problem.directions.shape[1]), unknowns.starts, unknowns.coefficients)
         stats = minimise(problem, still, ArrowLevenbergMarquardt(limit=1)).stats
         scales = np.sum(problem.directions, axis=0)
         return np.asarray(stats["schur"]), np.asarray(stats["pull"]), float(stats["cost"]), scales
+
+    def grips(self, names: Iterable[str]) -> bool:
+        """Whether a model with these effects holds its link by friction, so that its run is one trajectory."""
+        return bool(set(names) & set(self.outright))
 
     def quieter(self, factor: float) -> None:
         """Take the noise of the measured channel to be ``factor`` times what it was taken for."""
@@ -204,8 +238,30 @@ def pruned(trial: Trial) -> System:
     return with_values(bare, values(bare))
 
 
+def gripping() -> tuple[str, ...]:
+    """Laws of dry friction that can hold a link to the ground."""
+    return tuple(n for n, law in catalogue().items() if law.catalogued and law.slides and law.port == "ground")
+
+
+def with_friction(record: Record, base: System, free: tuple[str, ...], names: tuple[str, ...]) -> System | None:
+    """The joint of a record of transmitted force with friction at the ground, from its force loop; None for other records.
+
+    Without friction the link floats, and the sensitivities of a floating link say nothing about one that is held.
+    """
+    if record.kind != "transmitted" or not names:
+        return None
+    known = None if "inertia" in free else float(base.inertia)
+    return held_system(record, "joint" if base.has_play else "linear", known, names)[0]
+
+
 def applicable(law: type[AbstractEffect], base: System) -> bool:
-    """Whether a law can act at all in a joint like this one: laws of the contact need a play or a spring."""
+    """Whether a law can act at all in a joint like this one: laws of the contact need a play or a spring.
+
+    Where the transmitted force is measured, friction that sticks in the joint is no function of the motion, and the gain of
+    the force sensor is one with the size of everything.
+    """
+    if base.observed == "T" and ((law.slides and law.port == "joint") or canonical_name(law) == "sensor_gain"):
+        return False
     return not (base.contact is None and getattr(law, "needs_contact", False))
 
 

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput
-from ..records import Record
-from ..signals import noise_level
+from ..parameters import channel_unit
+from ..records import Record, oriented
 from ..system import System
 from .fit import SCORE_WINDOW, predict_record
 from .score import Score
+from .windows import observed_noise
 
 
 @dataclass(frozen=True)
@@ -41,8 +42,8 @@ class Comparison:
         )
 
     def __str__(self) -> str:
-        unit = "m" if self.translational else "rad"
         name = self.record.observed_name
+        unit = channel_unit(name, translational=self.translational)
         return "\n".join([self.record.summary(), f"  noise of {name} {self.noise:.3g} {unit}", self.sentence()])
 
 
@@ -63,5 +64,6 @@ def compare(system: System, record: Record, *, window: float = SCORE_WINDOW, tra
                 f"{record.path}: measures {record.observed_name}, but the model predicts {system.observed}; "
                 f"wanted a record with {system.observed}"
             )
-    noise = noise_level(record.t, record.channels[record.observed_name])
+    record = oriented(record)
+    noise = observed_noise(record)
     return Comparison(system, record, predict_record(system, record, window=window), noise, translational)

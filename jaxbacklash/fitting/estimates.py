@@ -14,6 +14,8 @@ from ..records import Record
 from ..system import System
 
 FOUND, ONE_SIDED, UNDETERMINED = "found", "one-sided", "not determined"
+CARRIED = 0.1
+"""Share of the largest transmitted force that only contact can carry."""
 NORMAL_95 = float(ndtri(0.975))
 
 
@@ -63,8 +65,12 @@ class Contacts:
 
 
 def contacts(record: Record, low: float, high: float) -> Contacts:
-    """Share of samples beyond each edge of the play, by the measured z (or y at a base at rest)."""
+    """Share of samples beyond each edge of the play, by the measured z (or y at a base at rest), or by a transmitted force."""
     moved = record.channels
+    if record.kind == "transmitted":
+        level = CARRIED * float(np.max(np.abs(moved["T"])))
+        share = [float(np.mean(sign * moved["T"] > level)) for sign in (1.0, -1.0)]
+        return Contacts(share[0], share[1], 0.5 * float(np.ptp(moved["x"])))
     z = moved["z"] if "z" in moved else moved["y"] - moved.get("x", 0.0)
     return Contacts(float(np.mean(z > high)), float(np.mean(z < low)), float(np.max(np.abs(z))))
 

@@ -15,10 +15,11 @@ from ..errors import NoAnswer
 from ..mechanics import AbstractEffect
 from ..parameters import values, with_values
 from ..precision import require_double_precision
-from ..records import Record
+from ..records import Record, oriented
 from ..system import System
 from .equation_error import Start
 from .estimates import Estimate, judge
+from .held import correlation, held, search_held
 from .levenberg import ArrowLevenbergMarquardt, minimise
 from .profile import with_profiles
 from .score import Score, score
@@ -26,10 +27,14 @@ from .setup import base_system, first_guess, free_names, make_problem
 from .shooting import Problem, Unknowns
 from .windows import LONGEST_PANEL, Layout, Windows, cut
 
+ABSOLUTE = ("force", "transmitted")
+"""Kinds of record with a measured force, which need no inertia to tell a stiffness."""
 SHOOTING_WINDOW = 0.1
 """Length of a shooting window [s]. Windows of 0.1 s converge from wild starts; 0.25 s and longer mostly do not."""
 SCORE_WINDOW = 0.2
 """Length of the windows whose prediction error is quoted [s]."""
+LOOSE = 2.5
+"""A run along the smoothed base motion may miss by this much before the base motion is let free within its noise."""
 ADEQUATE = 1.25
 """Windows are tied into one trajectory only where the untied misfit is below this many noises: else the model is wrong."""
 TIES = ((100.0,), (1.0, 100.0), (1.0,))
@@ -133,7 +138,7 @@ def fit(
         JAX is in single precision.
     """
     require_double_precision("fit")
-    chosen = (records,) if isinstance(records, Record) else tuple(records)
+    chosen = tuple(oriented(r) for r in ((records,) if isinstance(records, Record) else records))
     clock = {"start": time.perf_counter()}
     progress("reading noise and a first estimate", 0.02)
     start: Start | None = None
@@ -158,7 +163,7 @@ def fit(
     excess = max(1.0, scored[0].rms**2) if not found.tied else 1.0
     covariance = excess * found.covariance
     stderr = dict(zip(names, np.sqrt(np.diag(covariance))))
-    per_inertia = inertia is None and chosen[0].kind != "force"
+    per_inertia = inertia is None and chosen[0].kind not in ABSOLUTE
     estimates = judge(fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational)
     if profile:
         estimates = with_profiles(problem, unknowns, estimates, names, stderr, progress)
@@ -213,6 +218,9 @@ def prepare(
         omega = np.sqrt(float(system.contact.stiffness) / float(system.inertia))
         longest = min(longest, max(2.0 * np.pi / max(omega, 1e-9) / (32.0 * finer), records[0].dt / 16.0))
     windows, layout = cut(records, shooting, longest_panel=longest, least=intervals)
+    if system.observed == "T" and system.contact is not None:
+        # Ties are of motion: the noise of a force counts as the motion that would make it in contact.
+        windows = eqx.tree_at(lambda w: w.drop, windows, windows.drop * float(system.contact.stiffness))
     return windows, layout, max(1, round(window / (layout.length * layout.dt)))
 
 
@@ -227,6 +235,8 @@ def search(
 ) -> Found:
     """Minimise the misfit over free windows from several starts, then tie the best one's windows into one trajectory."""
     problem = make_problem(system, windows, free)
+    if held(system):
+        return _search_held(problem, free, starts=starts, seed=seed, progress=progress)
     guess = first_guess(problem)
     solver = ArrowLevenbergMarquardt()
     rng = np.random.default_rng(seed)
@@ -235,10 +245,7 @@ def search(
         progress(f"fitting, start {attempt + 1} of {max(1, starts)}", 0.05 + 0.6 * attempt / max(1, starts))
         begin = guess
         if attempt:
-            # Values that must keep their sign move by up to a factor of 1.6; others by a little of their scale.
-            shift = rng.uniform(-0.4, 0.6, len(free)) * np.where(problem.shrink, 1.0, 0.3)
-            theta = np.clip(shift, problem.lower, problem.upper)
-            begin = eqx.tree_at(lambda u: u.theta, guess, theta)
+            begin = eqx.tree_at(lambda u: u.theta, guess, _elsewhere(problem, rng))
         solution = minimise(problem, begin, solver)
         tried.append((float(solution.stats["cost"]), attempt, solution))
     tried = [entry for entry in tried if np.isfinite(entry[0])]
@@ -266,6 +273,51 @@ def search(
     return Found(problem, best.value, covariance, cost, agreeing, len(tried), tied, steps)
 
 
+def _elsewhere(problem: Problem, rng: np.random.Generator) -> np.ndarray:
+    """Another point to start from: values that must keep their sign move by up to a factor of 1.6; others by a little of
+    their scale."""
+    shift = rng.uniform(-0.4, 0.6, problem.directions.shape[1]) * np.where(problem.shrink, 1.0, 0.3)
+    return np.clip(shift, problem.lower, problem.upper)
+
+
+def _search_held(
+    problem: Problem, free: Sequence[str], *, starts: int, seed: int, progress: Callable[[str, float], None]
+) -> Found:
+    """`search` for a link that friction holds: one run through the record from each starting point, then, where the model is
+    adequate, the input moves with it."""
+    rng = np.random.default_rng(seed)
+    tried = []
+    for attempt in range(max(1, starts)):
+        said = f"fitting, start {attempt + 1} of {max(1, starts)}"
+        progress(said, 0.05 + 0.6 * attempt / max(1, starts))
+        theta = _elsewhere(problem, rng) if attempt else np.zeros(len(free))
+        tried.append(search_held(problem, theta, limit=30 if not attempt else 15))
+    tried = [entry for entry in tried if np.isfinite(entry[1]["cost"])]
+    if not tried:
+        raise NoAnswer("no start led to a finite misfit: the record may hold something else than this model's motion")
+    unknowns, seen, steps = min(tried, key=lambda entry: float(entry[1]["cost"]))
+    cost = float(seen["cost"])
+    w = problem.windows
+    count = freedom(unknowns, w, tied=True)
+    agreeing = sum(float(entry[1]["cost"]) - cost < 0.01 * cost for entry in tried)
+    tied = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1]))
+    adequate = np.sqrt(2.0 * cost / count) < LOOSE
+    if adequate:
+        progress("letting the base motion follow its own noise", 0.75)
+        joined, solution, taken = tie_windows(problem, unknowns, TIES[0], limit=20)
+        after = float(solution.stats["cost"])
+        if after < cost:
+            tied, unknowns, seen, cost, steps = joined, solution.value, solution.stats, after, steps + taken
+        adequate = np.sqrt(2.0 * cost / count) < ADEQUATE
+    excess = 1.0
+    if not adequate:
+        residual = np.asarray(seen["predicted"].motion) - np.asarray(w.measured)
+        excess = 2.0 * cost / count * correlation(residual, np.asarray(w.weight))
+    scale = np.sum(np.asarray(problem.directions), axis=0)
+    covariance = excess * _inverse(np.asarray(seen["schur"])) * np.outer(scale, scale)
+    return Found(tied, unknowns, covariance, cost, agreeing, len(tried), True, steps)
+
+
 def predict_record(
     system: System, record: Record, *, window: float = SCORE_WINDOW, free: Sequence[str] | None = None
 ) -> Score:
@@ -274,6 +326,7 @@ def predict_record(
     ``free`` only sets how many directions the problem carries, so that the program compiled for a fit serves again.
     """
     require_double_precision("predict_record")
+    record = oriented(record)
     windows, layout, group = prepare(system, [record], window)
     problem = make_problem(system, windows, free_names(system) if free is None else free)
     return score(problem, first_guess(problem), layout, group=group)[0][0]

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..parameters import channel_unit
+
 if TYPE_CHECKING:
     from .estimates import Estimate
     from .fit import Fit
@@ -42,8 +44,9 @@ def text(fit: Fit) -> str:
     lines = []
     for record, score, noise, moved in zip(fit.records, fit.scores, fit.noise, fit.input_noise):
         lines.append(record.summary())
-        unit = "m" if fit.translational else "rad"
-        lines.append(f"  noise of {record.observed_name} {noise:.3g} {unit}" + (f", of x {moved:.3g} {unit}" if moved else ""))
+        unit = channel_unit("x", translational=fit.translational)
+        own = channel_unit(record.observed_name, translational=fit.translational)
+        lines.append(f"  noise of {record.observed_name} {noise:.3g} {own}" + (f", of x {moved:.3g} {unit}" if moved else ""))
         lines.append(
             f"  prediction error over windows: {score.rms:.3g} times the noise (median window {score.median:.3g})"
         )

@@ -13,10 +13,16 @@ from ..parameters import ravel, specs, values, with_values
 from ..records import Record
 from ..system import System
 from .equation_error import Start, estimate
+from .held import held, march, place
+from .loop import read_loop
 from .shooting import Problem, Unknowns
 from .windows import Windows
 
 MODELS = ("joint", "linear", "free")
+UNLIKE_A_LOOP = 0.5
+"""Share of a transmitted force that its loop may leave unexplained."""
+PERIOD = 20.0
+"""Samples in a period of the contact's resonance at the start, where a record of transmitted force has to tell the inertia."""
 
 
 def base_system(
@@ -38,13 +44,10 @@ def base_system(
     """
     if model not in MODELS:
         raise BadInput(f"--model {model}: not a model; choose {', '.join(MODELS)} or a model file ending in .toml")
-    if record.kind == "transmitted":
-        raise BadInput(
-            f"{record.path}: has the base motion x and the transmitted torque T but no motion of the link; "
-            "wanted z or y beside x to fit a joint"
-        )
     if inertia is not None and not (np.isfinite(inertia) and inertia > 0):
         raise BadInput(f"--inertia {inertia:g}: wanted a positive number of kg m^2 (kg for a translating mass)")
+    if record.kind == "transmitted":
+        return held_system(record, model, inertia, effects)
     known = inertia
     if inertia is None and record.kind != "force":
         known = 1.0
@@ -59,12 +62,47 @@ def base_system(
     return system, free + free_names(system), start
 
 
+def held_system(
+    record: Record, model: str, inertia: float | None, effects: Sequence[AbstractEffect | str] = ()
+) -> tuple[System, tuple[str, ...], Start]:
+    """`base_system` for a record of transmitted force, started from its force loop: a link that friction at the ground holds.
+
+    Raises
+    ------
+    BadInput
+        The force is not that of a link which something holds while its base moves slowly.
+    """
+    loop = read_loop(record)
+    if loop.share > UNLIKE_A_LOOP:
+        raise BadInput(
+            f"{record.path}: has the base motion x and the transmitted force T but no motion of the link, and T is not that of a "
+            f"link held by friction (such a loop leaves {100 * loop.share:.0f} % of it unexplained); wanted z or y beside x"
+        )
+    moving = np.gradient(record.channels["x"], record.dt)
+    # Without friction only its own weight can hold the link; with it, the contact's resonance is where the record can show it.
+    slow = 0.1 * float(np.std(moving)) / float(np.std(record.channels["x"]))
+    added = add_effects(System(1.0, None, Damper(0.0)), effects).effects
+    rubs = any(effect.slides and effect.port == "ground" for effect in added.values())
+    omega = 2.0 * np.pi * record.rate_hz / PERIOD if rubs else slow
+    mass = inertia if inertia is not None else loop.stiffness / omega**2
+    damping = 0.2 * float(np.sqrt(loop.stiffness * mass)) if rubs else 1e-3 * loop.stiffness / omega
+    start = Start(mass, loop.backlash if model == "joint" else None, loop.stiffness, damping, loop.share)
+    system = add_effects(_system(start, record, model), effects)
+    strength = {
+        f"{name}.Tc": loop.sliding
+        for name, effect in system.effects.items()
+        if effect.slides and effect.port == "ground" and "Tc" in specs(effect)
+    }
+    system = _sharpen(with_values(system, strength), record)
+    return system, (() if inertia is not None else ("inertia",)) + free_names(system), start
+
+
 def _sharpen(system: System, record: Record) -> System:
     """Regularise the sign of a speed over less than half a percent of the speeds in the record, where that is sharper.
 
     For the regression and the referee; the fit's located steps have no width.
     """
-    moved = record.channels[record.observed_name]
+    moved = record.channels["x" if record.kind == "transmitted" else record.observed_name]
     lag = max(1, round(0.01 / record.dt))
     speed = float(np.sqrt(np.mean((moved[lag:] - moved[:-lag]) ** 2))) / (lag * record.dt)
     present = values(system)
@@ -142,7 +180,14 @@ def make_problem(system: System, windows: Windows, free: Sequence[str], *, tie: 
 def first_guess(problem: Problem) -> Unknowns:
     """Starts from the smoothed data, the base motion from its spline, parameters as they are."""
     w, system = problem.windows, problem.system
+    if held(system):
+        theta = np.zeros(problem.directions.shape[1])
+        return Unknowns(theta, np.asarray(march(problem, theta, w.coefficients)), np.asarray(w.coefficients))
     y, dy = np.asarray(w.starts)
+    if system.observed == "T":
+        # A link that something holds, where its contact would carry the first force of the window.
+        level = 10.0 / np.max(np.asarray(w.weight))
+        y, dy = y + np.asarray(place(system, w.t0, np.asarray(w.measured)[:, 0], level)), 0.0 * dy
     hidden = len(system.state_names) - 2
     if hidden:
         z, dz = _relative(w, y, dy)

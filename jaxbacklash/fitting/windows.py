@@ -19,7 +19,7 @@ from scipy.interpolate import BSpline
 
 from ..errors import BadInput
 from ..records import Record
-from ..signals import DEGREE, NEGLIGIBLE, choose_intervals, fit_spline, is_smooth, knots, noise_level
+from ..signals import DEGREE, NEGLIGIBLE, choose_intervals, fit_spline, is_smooth, knots, noise_level, noise_of_differences
 from .chunks import CHUNK
 
 Array = Any
@@ -185,7 +185,7 @@ def _cut_one(record: Record, length: int, every: int, intervals: int, driver: st
     count = -(-samples // length)
     rows = count + 1
     observed = record.channels[record.observed_name]
-    noise = noise_level(record.t, observed)
+    noise = observed_noise(record)
     t0 = record.t[0] + length * dt * np.arange(rows)
     weight = _rows(np.full(samples, 1.0 / noise), rows, length)
     part: dict[str, Any] = {
@@ -212,6 +212,14 @@ def _cut_one(record: Record, length: int, every: int, intervals: int, driver: st
     part["force"] = _force_edges(exact, rows, length, every)
     part["starts"] = _starts(record, motion, observed, length, t0)
     return part
+
+
+def observed_noise(record: Record) -> float:
+    """Standard deviation of the noise of the measured channel, in its unit."""
+    values = record.channels[record.observed_name]
+    noise = noise_level(record.t, values)
+    # A force has corners where the contact begins; both estimates err upwards.
+    return min(noise, noise_of_differences(values)) if record.observed_name == "T" else noise
 
 
 def _rows(values: np.ndarray, rows: int, length: int) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from .measured_series import MeasuredSeries as MeasuredSeries
 from .measured_series import read_series as read_series
+from .orientation import oriented as oriented
 from .reader import read_record as read_record
 from .record import Record as Record
 from .units import parse_columns as parse_columns

@@ -29,7 +29,8 @@ def facts(result: Entry, record: Entry, path: str, stages: Sequence[Entry]) -> I
         yield "kind of record", str(record["kind"])
     length, inertia = length_unit(stages), result.get("inertia")
     for channel, value in (result.get("noise") or {}).items():
-        unit = (record.get("units") or {}).get(channel) or (length if channel in ("x", "y", "z") else "")
+        own = {"m": "N", "rad": "N m"}.get(length, "") if channel in ("F", "T") else length
+        unit = (record.get("units") or {}).get(channel) or own
         yield f"noise of {channel}", f"{short(value)} {pretty_unit(unit)} (standard deviation, from the data)"
     if isinstance(inertia, Mapping) and is_number(inertia.get("value")) and not result.get("per_inertia"):
         how = "given" if inertia.get("given") else "fitted"

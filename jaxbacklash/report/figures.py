@@ -7,6 +7,7 @@ from .figures_criticism import missing_torque_in_time as missing_torque_in_time
 from .figures_criticism import missing_torque_surface as missing_torque_surface
 from .figures_criticism import where_it_fails as where_it_fails
 from .figures_frf import frequency_response as frequency_response
+from .figures_joint import force_loop as force_loop
 from .figures_joint import phase_plane as phase_plane
 from .figures_joint import restoring_force as restoring_force
 from .figures_model import candidate_ranking as candidate_ranking

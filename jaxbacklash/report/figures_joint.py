@@ -113,6 +113,41 @@ def restoring_force(
     return figure
 
 
+@drawn_in_style
+def force_loop(
+    x: Any, force: Any, model: Any, *, level: float, unit: str, length_unit: str = "m", label: str = "transmitted force T"
+) -> Figure:
+    """Transmitted force against base motion, measured and modelled, with the band in which it counts as nothing.
+
+    Parameters
+    ----------
+    x : (N,) base motion [length_unit]
+    force, model : (N,) transmitted force as measured and as predicted [unit]; NaN breaks the lines
+    level : force below which the joint counts as carrying nothing [unit]
+    unit, length_unit : ``"N"`` and ``"m"``, or ``"N m"`` and ``"rad"``
+
+    Returns
+    -------
+    Figure
+    """
+    x, force, model = column(x), column(force), column(model)
+    if x.size < 2:
+        return empty_figure("No force to draw.")
+    figure = new_figure(MEDIUM)
+    axes = figure.subplots(1, 2, sharex=True, sharey=True)
+    thin = strided(x.size, POINTS)
+    for ax, (name, values, colour) in zip(axes, (("measured", force, MEASURED), ("model", model, MODEL))):
+        ax.axhspan(-level, level, color=GAP, alpha=0.16, lw=0, zorder=0)
+        ax.plot(x[thin], values[thin], color=colour, lw=0.8, rasterized=x[thin].size > 4000)
+        ax.axhline(0.0, color=INK, lw=0.5)
+        ax.set(title=name, xlabel=with_unit("x", length_unit))
+        ax.xaxis.set_major_locator(MaxNLocator(6))
+        ax.margins(x=0.03, y=0.06)
+    axes[0].set_ylabel(with_unit(label, unit))
+    figure.legend([Patch(color=GAP, alpha=0.4, lw=0)], ["a tenth of the sliding force"], loc="outside upper right")
+    return figure
+
+
 def play_edges(edges: Any) -> tuple[float, float] | None:
     """Both edges of the play in ascending order, or None when either is missing."""
     if edges is None or len(edges) != 2 or any(e is None for e in edges):

@@ -9,13 +9,15 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..fitting import Comparison, Fit, Score
+from ..fitting.loop import NOTHING, read_plateau, sliding_level
 from ..mechanics import Drive
-from ..parameters import unit_text
+from ..parameters import channel_unit, unit_text
 from ..records import Record
 from ..signals import choose_intervals, fit_spline
 from ..system import System
-from .figures import error_by_stage, measured_against_model, phase_plane, residual_in_time, restoring_force, to_svg
+from .figures import error_by_stage, force_loop, measured_against_model, phase_plane, residual_in_time, restoring_force, to_svg
 from .html import Panel, write_report
+from .style import short
 
 INSIDE = slice(10, -10)
 """Samples that are drawn where derivatives count: at its two ends a spline's curvature is little more than noise."""
@@ -48,7 +50,7 @@ def series(record: Record, score: Score, translational: bool) -> dict[str, Any]:
         "residual_over_noise": score.residual,
         "window_starts": score.window_times,
         "label": record.observed_name,
-        "unit": _length(translational),
+        "unit": channel_unit(record.observed_name, translational=translational),
     }
 
 
@@ -57,6 +59,7 @@ def pictures(
 ) -> list[Panel]:
     """The four pictures of a model beside a record."""
     name, unit = record.observed_name, _length(translational)
+    own = channel_unit(name, translational=translational)
     worst = score.window_times[int(np.nanargmax(score.window_rms))]
     panels = [
         Panel(
@@ -65,7 +68,7 @@ def pictures(
             f"by {score.median:.3g} times in the median one.",
             to_svg(
                 measured_against_model(
-                    score.t, score.measured, score.predicted, window_starts=score.window_times, label=name, unit=unit, noise=noise
+                    score.t, score.measured, score.predicted, window_starts=score.window_times, label=name, unit=own, noise=noise
                 )
             ),
             "model",
@@ -82,7 +85,7 @@ def pictures(
         ),
     ]
     if name == "T":
-        return panels
+        return [_loop_panel(record, score, unit, own), *panels]
     motion = Motion(record, name)
     edges = tuple(float(e) for e in system.edges(0.0)) if system.has_play else None
     where = "The play lies between the two lines: no contact there. " if edges else ""
@@ -111,6 +114,18 @@ def pictures(
             )
         )  # fmt: skip
     return panels
+
+
+def _loop_panel(record: Record, score: Score, unit: str, own: str) -> Panel:
+    """The force loop: the first picture of a record of transmitted force."""
+    x, force = record.channels["x"], record.channels["T"]
+    known, told = read_plateau(x, force), read_plateau(x, score.predicted)
+    words = "Transmitted force against the base motion, measured and as the model predicts it window by window."
+    if known.median is not None:
+        words += f" Less than a tenth of the sliding force is carried over {short(known.median, 3)} {unit} of travel"
+        words += f", in the model over {short(told.median, 3)} {unit}." if told.median is not None else "."
+    drawn = force_loop(x, force, score.predicted, level=NOTHING * sliding_level(force), unit=own, length_unit=unit)
+    return Panel("Force loop", words, to_svg(drawn), "loop")
 
 
 class Motion:

@@ -36,7 +36,7 @@ def refine_report(
     if len(refinement.stages) > 1 or first is None:
         have = " + ".join(["the base model", *refinement.effects])
         panels += _failures(last, have, "last", fit.translational) if last is not None else [_rest(refinement, have)]
-    panels += [joint[name] for name in ("model", "force", "phase") if name in joint]
+    panels += [joint[name] for name in ("loop", "model", "force", "phase") if name in joint]
     write_report(path, result, panels, series(fit.records[0], fit.score, fit.translational))
 
 

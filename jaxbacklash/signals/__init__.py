@@ -15,6 +15,7 @@ from .morlet import Scalogram as Scalogram
 from .morlet import frequency_grid as frequency_grid
 from .morlet import scalogram as scalogram
 from .noise import noise_level as noise_level
+from .noise import noise_of_differences as noise_of_differences
 from .ridge import ridge as ridge
 from .smoothing import DEGREE as DEGREE
 from .smoothing import NEGLIGIBLE as NEGLIGIBLE

@@ -7,6 +7,10 @@ from scipy.special import gammaincinv
 
 from .smoothing import choose_intervals, fit_spline
 
+PIECE, OVERLAP, QUIET = 16, 2.63, 0.3
+"""Fourth differences in a piece, how many of them count for one (the sum of their squared autocorrelations), and the quantile of
+the pieces that is looked at."""
+
 
 def noise_level(t: np.ndarray, values: np.ndarray, *, window: float = 0.1) -> float:
     """Standard deviation of the white noise on a motion that is smooth but for a few corners.
@@ -35,6 +39,24 @@ def noise_level(t: np.ndarray, values: np.ndarray, *, window: float = 0.1) -> fl
     freedom = length * per_sample
     energy = np.sum(residual[: pieces * length].reshape(pieces, length) ** 2, axis=1)
     return float(np.sqrt(np.median(energy) / _chi2_median(freedom)))
+
+
+def noise_of_differences(values: np.ndarray) -> float:
+    """Standard deviation of the white noise on a signal with corners and jumps of slope, such as a contact force.
+
+    Fourth differences take away what is smooth over five samples; the pieces among the quieter ones show what noise is left.
+    Where most pieces hold a corner, the result is too large.
+
+    Parameters
+    ----------
+    values : shape (N,), any unit
+    """
+    differences = np.diff(values, 4)
+    pieces = max(1, differences.size // PIECE)
+    energy = np.mean(differences[: pieces * PIECE].reshape(pieces, -1) ** 2, axis=1) / 70.0
+    freedom = PIECE / OVERLAP
+    expected = 2.0 * float(gammaincinv(0.5 * freedom, QUIET)) / freedom
+    return float(np.sqrt(np.quantile(energy, QUIET) / expected))
 
 
 def _chi2_median(freedom: float) -> float:
