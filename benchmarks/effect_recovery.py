@@ -105,6 +105,7 @@ def judge(case: Case, found: Refinement, seconds: float) -> dict[str, Any]:
         "number": case.number, "hidden": list(case.hidden), "kind": case.kind, "found": list(found.effects),
         "alternatives": [list(a) for a in found.alternatives], "verdict": found.verdict.word, "right": right,
         "rms": [s.fit.score.rms for s in found.stages], "inside": inside, "seconds": seconds,
+        "joint": {n: found.fit.parameters[n].value for n in truth}, "truth": truth,
         "identifiable": True if right or unknown or not case.hidden else identifiable(case),
     }  # fmt: skip
 

@@ -75,14 +75,24 @@ class Bound:
         return dict(zip(self.names, np.sqrt(np.diag(self.covariance))))
 
 
-def base_motion_bound(rig: Rig, t, y, v, x: Callable, *, sigma_x: float, sigma_z: float, spacing: float) -> Bound:
-    """The bound on (b, k, c) from a base-motion record.
+def base_motion_bound(
+    rig: Rig, t, y, v, x: Callable, *, sigma_x: float, sigma_z: float, spacing: float, torques: dict | None = None
+) -> Bound:
+    """The bound on (b, k, c), and on the strengths of absent torques, all at once, from a base-motion record.
 
     Args: t (n,) sample times from 0 [s]; y, v (n,) the link's true motion [rad, rad/s]; x(t) the base's [rad];
-    sigma_x, sigma_z [rad], sigma_x = 0: x known exactly; spacing: between the knots of the space that x lies in [s].
+    sigma_x, sigma_z [rad], sigma_x = 0: x known exactly; spacing: between the knots of the space that x lies in [s];
+    torques: name -> (n,) torque at unit strength along the motion [N m], of laws whose strength is zero; by the trapezoidal rule.
     """
     steps = _Steps(rig, t, y, v, _Space(t[-1], spacing, x), JOINT, forced=False)
-    return Bound(JOINT, _covariance(steps, sigma_z, sigma_x), steps.space.misfit)
+    for name, torque in (torques or {}).items():
+        steps.add(name, np.asarray(torque, float))
+    return Bound(steps.names, _covariance(steps, sigma_z, sigma_x), steps.space.misfit)
+
+
+def widest_spacing(x: Callable, end: float, within: float, spacings: tuple[float, ...]) -> float:
+    """The first of some distances of knots [s] whose spline is within a root mean square distance of x [rad] over (0, end)."""
+    return next((s for s in spacings if _Space(end, s, x).misfit < within), spacings[-1])
 
 
 def force_bound(
@@ -144,6 +154,7 @@ class _Steps:
 
     def __init__(self, rig: Rig, t, y, v, space: _Space, names: tuple[str, ...], forced: bool) -> None:
         self.rig, self.t, self.space, self.names, self.forced = rig, np.asarray(t, float), space, names, forced
+        self.sizes = {name: getattr(rig, name) for name in names}
         self._joint = {side: self._joint_system(side) for side in (-1, 0, 1)}
         self._known: dict[tuple[int, int], np.ndarray] = {}
         n, q = self.t.size, len(names)
@@ -151,6 +162,15 @@ class _Steps:
         self.gains = []
         for i in range(n - 1):
             self._step(i, np.array([y[i], v[i]]))
+
+    def add(self, name: str, torque: np.ndarray) -> None:
+        """One more parameter: the strength, at zero, of a torque that is known along the motion."""
+        push = np.zeros((self.t.size, 2, 1))
+        push[:, 1, 0] = torque / self.rig.inertia
+        step = np.diff(self.t)[:, None, None]
+        self.h = np.concatenate([self.h, 0.5 * step * (self.phi @ push[:-1] + push[1:])], axis=2)
+        self.names = (*self.names, name)
+        self.sizes[name] = self.rig.stiffness * self.rig.backlash / float(np.sqrt(np.mean(torque**2)))
 
     def _field(self, side: int) -> tuple[np.ndarray, np.ndarray]:
         """M (9, 9), and what its second row's derivatives by the parameters are, (q, 9)."""
@@ -267,7 +287,7 @@ def _covariance(steps: _Steps, sigma: float, sigma_x: float) -> np.ndarray:
 
 
 def _sizes(steps: _Steps) -> np.ndarray:
-    return np.array([getattr(steps.rig, name) for name in steps.names])
+    return np.array([steps.sizes[name] for name in steps.names])
 
 
 def _ties(steps: _Steps, scale: np.ndarray) -> csc_matrix:
