@@ -19,7 +19,12 @@ Array = Any
 
 
 class AbstractExcitation(eqx.Module):
-    """A prescribed base motion [rad] or force [N m] as a function of time."""
+    """A prescribed base motion [rad] or force [N m] as a function of time.
+
+    ``series`` names the fields that are arrays even of one drive; all others are numbers, or arrays over the cells of a map.
+    """
+
+    series: ClassVar[tuple[str, ...]] = ()
 
     @abc.abstractmethod
     def at(self, t: Scalar) -> Drive:
@@ -93,6 +98,7 @@ class Multisine(AbstractSignal):
     omegas: Array
     phases: Array
     as_force: bool = eqx.field(default=False, static=True)
+    series: ClassVar[tuple[str, ...]] = ("amplitudes", "omegas", "phases")
 
     def signal(self, t: Scalar) -> Scalar:
         return jnp.sum(self.amplitudes * jnp.sin(self.omegas * t + self.phases))
@@ -108,6 +114,7 @@ class SteppedSine(AbstractSignal):
     frequencies: Array
     dwell: Scalar
     as_force: bool = eqx.field(default=False, static=True)
+    series: ClassVar[tuple[str, ...]] = ("amplitudes", "frequencies")
 
     def signal(self, t: Scalar) -> Scalar:
         amplitudes, frequencies = jnp.asarray(self.amplitudes), jnp.asarray(self.frequencies)
@@ -136,6 +143,7 @@ class Sampled(AbstractExcitation):
     dx: Array
     force: Array
     dforce: Array | None = None
+    series: ClassVar[tuple[str, ...]] = ("x", "dx", "force", "dforce")
 
     def at(self, t: Scalar) -> Drive:
         position = (t - self.t0) / self.dt

@@ -24,7 +24,7 @@ import numpy as np
 
 import jaxbacklash as jb
 from jaxbacklash import dynamics, program
-from jaxbacklash.excitation import Harmonic
+from jaxbacklash.excitation import Chirp, Harmonic
 from jaxbacklash.report import figures_maps as figures
 
 # %% [markdown]
@@ -65,7 +65,7 @@ print("sum", exponents.values.sum())
 
 # %% [markdown]
 # Any system of the package has exponents, dry friction and dampers of the contact included. Between its edges this one is
-# linear, so it was followed exactly; others go by located steps. Friction calms it:
+# linear, so it was followed exactly; with friction it goes by located steps. Friction calms it:
 
 # %%
 with_friction = system.with_effects(jb.CoulombGround(0.05))
@@ -145,7 +145,8 @@ figures.exponent_and_period_map(
 
 # %%
 joint = jb.base_motion_joint(inertia=3.16, backlash=0.026, stiffness=11000.0, damping=20.0)
-family = dynamics.NamedParameters(joint, Harmonic(0.05, 2.0 * np.pi * 1.54))
+shaken = Harmonic(0.05, 2.0 * np.pi * 1.54)
+family = dynamics.NamedParameters(joint, shaken)
 axes = {
     "drive.amplitude": np.radians(np.linspace(1.0, 6.0, 6 if tiny else 60)),
     "drive.frequency": np.linspace(1.0, 3.0, 4 if tiny else 40),
@@ -155,4 +156,43 @@ print(own.lyapunov.dims, own.lyapunov.attrs["units"], own.attrs["solver"])
 figures.exponent_and_period_map(
     np.degrees(own["drive.amplitude"]), own["drive.frequency"], own.lyapunov, own.period,
     names=["amplitude of the base", "frequency"], units=["deg", "Hz"], exponent_unit=own.lyapunov.attrs["units"],
+)
+
+# %% [markdown]
+# ## With everything the catalogue has
+#
+# The weight of the link (as sin y), a contact that hardens, dry friction: such a joint is not linear between its edges, so the
+# exact steps do not apply, and small steps that end at every edge and every rest take over by themselves. The attribute `solver`
+# tells which way was taken. These take some ten times longer. How does the amplitude of the base decide what this joint does?
+
+# %%
+real = joint.with_effects(jb.Gravity(28.0), jb.CubicStiffness(3e7), jb.CoulombJoint(1.0))
+values = np.radians(np.linspace(2.0, 5.0, 3 if tiny else 60))
+swept = dynamics.bifurcation(
+    dynamics.NamedParameters(real, shaken), "drive.amplitude", values,
+    settle=10 if tiny else 60, samples=20, start_periods=30 if tiny else 200, starts=[(0.0, 0.0), (0.02, 0.0)],
+)
+print(swept.attrs["solver"])
+figures.bifurcation_diagram(
+    np.degrees(values), {"swept up": swept.swept_up, "swept down": swept.swept_down, "from two starts": swept.from_starts},
+    name="amplitude of the base", unit="deg", length="rad", play=(-0.013, 0.013),
+)
+
+# %% [markdown]
+# ## Along a motion that never repeats
+#
+# A chirp, or a measured base motion (`jaxbacklash.simulation.measured_base(record)`), has no period: give the time between two
+# samples instead. The exponent is then that of this one stretch. Where it is positive, no simulation of the whole stretch can be
+# trusted, however good the model, and a fit must look through short windows.
+
+# %%
+chirp = Chirp(amplitude=0.06, f0=0.5, f1=6.0, duration=20.0)
+plays = np.linspace(0.01, 0.05, 5 if tiny else 120)
+wanted = dynamics.request(
+    dynamics.NamedParameters(joint, chirp), {"backlash": plays}, period=0.25, periods=40 if tiny else 80, skip=4, samples=16
+)
+stretch = dynamics.run_map(wanted)
+print(stretch.attrs["solver"])
+figures.exponent_curve(
+    plays, stretch.lyapunov, stretch.lyapunov_stderr, name="backlash", unit="rad", exponent_unit=stretch.lyapunov.attrs["units"]
 )

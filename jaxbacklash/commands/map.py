@@ -51,8 +51,8 @@ def run(
         map_ = run_map(wanted, store=store, progress=tell)
         write_netcdf(map_, out)
         computed = time.perf_counter()
-        map_ = map_.load()
-        shutil.rmtree(store)
+        # All but the samples, of which the page shows one cut: a large map's would not fit.
+        map_ = map_.drop_vars("poincare").load().assign(poincare=map_["poincare"])
         result: dict[str, Any] = {
             "schema": 1, "command": "map", "version": __version__, "case": case, "cells": wanted.cells, "periods": periods,
             "skip": skip, "axes": {name: [values[0], values[-1], len(values)] for name, values in wanted.axes},
@@ -64,6 +64,7 @@ def run(
         }  # fmt: skip
         tell("drawing", 1.0)
         picture(map_, result, out)
+        shutil.rmtree(store)
     if as_json:
         sys.stdout.write(json_text(result))
     else:

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from .family import Family
 from .follow import follow
-from .periodicity import CHAOTIC, periodicity
+from .periodicity import CHAOTIC, periodicity, sizes
 from .plan import Plan
 
 Array = Any
@@ -45,8 +45,9 @@ class Basins(NamedTuple):
 
 
 def basins(
-    family: Family, given: dict[str, float], y: Any, dy: Any, *, periods: int = 400, samples: int = 32, near: float = 1e-3
-) -> Basins:
+    family: Family, given: dict[str, float], y: Any, dy: Any, *, periods: int = 400, samples: int = 32, near: float = 1e-3,
+    period: float | None = None, exact: bool | None = None, panels: int | None = None,
+) -> Basins:  # fmt: skip
     """Follow a grid of starts and sort them by where they end.
 
     Parameters
@@ -54,7 +55,9 @@ def basins(
     family, given : whose basins, at which parameter values
     y, dy : (M,), (N,) starting positions and speeds
     periods, samples : how long each start is followed and how many points it is judged by
-    near : largest distance between points of the same periodic attractor, in half plays (rad where there is no play)
+    near : largest distance between points of the same periodic attractor, in half plays and half plays times the contact's
+        natural frequency (rad and rad/s where there is no play)
+    period, exact, panels : see `follow`
 
     Returns
     -------
@@ -65,25 +68,28 @@ def basins(
     one = np.ones(grid[0].size)
     system, drive = family.build({name: value * one for name, value in given.items()})
     plan = Plan(periods, max(0, min(periods // 2, periods - max(100, samples))), samples)
-    found, _ = follow(system, drive, grid[0].ravel(), grid[1].ravel(), plan)
+    found, _ = follow(
+        system, drive, grid[0].ravel(), grid[1].ravel(), plan, period=period, exact=exact, panels=panels
+    )
     p, v, exponent = (np.asarray(a) for a in (found.p, found.v, found.lyapunov))
-    period = periodicity(p, v, exponent, np.asarray(found.stderr))
+    scale = np.array([float(np.max(size)) for size in sizes(system)])
+    repeats = periodicity(p, v, exponent, np.asarray(found.stderr), scale=scale[0], speed=scale[1])
     number = np.full(one.size, -1)
     kept: list[tuple[int, np.ndarray]] = []
-    for k in np.argsort(period == CHAOTIC, kind="stable"):
-        if period[k] < 0:
+    for k in np.argsort(repeats == CHAOTIC, kind="stable"):
+        if repeats[k] < 0:
             continue
-        points = np.stack([p[:, k], v[:, k]], axis=1)[-(int(period[k]) or samples) :]
+        points = np.stack([p[:, k], v[:, k]], axis=1)[-(int(repeats[k]) or samples) :] / scale
         for j, (T, others) in enumerate(kept):
-            if period[k] == T and _same(T, points, others, near):
+            if repeats[k] == T and _same(T, points, others, near):
                 number[k] = j
                 break
         else:
             number[k] = len(kept)
-            kept.append((int(period[k]), points))
+            kept.append((int(repeats[k]), points))
     attractors, order = [], np.argsort([-(number == j).sum() for j in range(len(kept))], kind="stable")
     for j in order:
-        T, points = kept[j]
+        T, points = kept[j][0], kept[j][1] * scale
         inside = number == j
         attractors.append(Attractor(T, float(np.median(exponent[inside])), points[:, 0], points[:, 1], float(inside.mean())))
     rank = np.append(np.argsort(order), -1)

@@ -126,7 +126,7 @@ class NamedParameters:
     def constants(self, names: list[str]) -> dict[str, float]:
         own = dict(zip(specs(self.system), jax.tree.leaves(self.system)))
         kept = {name: float(value) for name, value in own.items() if name not in names}
-        amount = {f"drive.{k}": v for k, v in vars(self.drive).items() if isinstance(v, int | float) or np.ndim(v) == 0}
+        amount = {f"drive.{k}": v for k, v in vars(self.drive).items() if v is not None and np.ndim(v) == 0}
         return kept | {k: float(v) for k, v in amount.items() if k not in names and not isinstance(v, bool)}
 
     def identity(self) -> str:

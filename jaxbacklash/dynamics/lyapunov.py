@@ -25,14 +25,16 @@ import numpy as np
 from ..errors import NoAnswer
 from ..excitation import AbstractExcitation, Harmonic, Rest
 from ..precision import require_double_precision
-from ..solvers.exact_periods import advance_periods, begin
+from ..solvers.exact_courses import Course, Joint, advance_course
+from ..solvers.exact_periods import Phase, advance_periods, begin
 from ..solvers.linear_pieces import LinearPieces
 from ..solvers.panels import rk4
 from ..solvers.substeps import run_panels
 from ..system import System
+from .courses import begins, check_length, course
 from .errorbars import batch_error
-from .follow import default_panels
-from .normal_form import normal_form, why_not
+from .located import default_panels
+from .normal_form import bare_joint, normal_form, not_linear, why_not
 
 Array = Any
 Step = Callable[[Array, Array], Array]
@@ -70,7 +72,7 @@ def lyapunov_spectrum(
     y0, dy0 : start of the link [rad, rad/s]
     period : length of a stretch [s], whole periods of the drive for a steady motion; default: the drive's own
     panels : located panels in a stretch; default: at least 128, and 40 in a period of the contact resonance
-    exact : False forbids the exact steps, which are taken wherever the system allows them and no period or panels are given
+    exact : False forbids the exact steps, which are taken wherever the system allows them and no panels are given
 
     Raises
     ------
@@ -78,23 +80,32 @@ def lyapunov_spectrum(
         The motion grows without bound.
     ValueError
         The drive has no period and none is given.
+    BadInput
+        A measured drive ends before the run does.
     """
     require_double_precision("a Lyapunov spectrum")
     drive = Rest() if drive is None else drive
-    if exact is not False and period is None and panels is None and why_not(system, drive) is None:
+    may, first = exact is not False and panels is None, jnp.asarray(begins(drive), dtype=float)
+    start = drive.at(first)
+    if may and period is None and why_not(system, drive) is None:
         assert isinstance(drive, Harmonic)
         form = normal_form(system, drive)
-        x0 = drive.at(jnp.zeros(()))
-        p0, v0 = (y0 - x0.x - form.middle) / form.half_play, (dy0 - x0.dx) / form.half_play
+        p0, v0 = (y0 - start.x - form.middle) / form.half_play, (dy0 - start.dx) / form.half_play
         times, growth, end = _run_exact(form.pieces, form.phase, p0, v0, periods, count or 2)
         return _exponents(times * 2.0 * np.pi / float(drive.omega), growth, end, skip)
     if period is None:
         if not isinstance(drive, Harmonic):
             raise ValueError("the drive has no period of its own: give period, the length of a stretch [s]")
         period = 2.0 * np.pi / float(drive.omega)
+    check_length(drive, periods * period)
+    path = (not_linear(system) or course(drive, periods * period)) if may else None
+    if isinstance(path, Course):
+        joint, middle, half = bare_joint(system)
+        p0, v0 = (y0 - start.x - middle) / half, (dy0 - start.dx) / half
+        times, growth, end = _run_course(joint, path, jnp.asarray(period), p0, v0, periods, count or 2)
+        return _exponents(times * period, growth, end, skip)
     many = panels or default_panels(system, period)
-    start = drive.at(jnp.zeros(()))
-    state = jnp.stack([jnp.asarray(s, dtype=float) for s in system.rest(jnp.zeros(()), jnp.asarray(y0), jnp.asarray(dy0), start)])
+    state = jnp.stack([jnp.asarray(s, dtype=float) for s in system.rest(first, jnp.asarray(y0), jnp.asarray(dy0), start)])
     args = (system, drive, jnp.asarray(period))
     times, growth, end = _run_system(args, state, periods, count or state.size, many)
     return _exponents(times * period, growth, end, skip)
@@ -103,11 +114,11 @@ def lyapunov_spectrum(
 @eqx.filter_jit
 def _run_system(args: Any, state: Array, periods: int, count: int, panels: int) -> Any:
     system, drive, period = args
-    h = period / panels
+    h, first = period / panels, begins(drive)
 
     def stretch(k: Array, q: Array) -> Array:
-        edges = drive.grid(k * period, h, panels)
-        after, _ = run_panels(system, k * period, tuple(q), edges, h, panels, system.switches)
+        t = first + k * period
+        after, _ = run_panels(system, t, tuple(q), drive.grid(t, h, panels), h, panels, system.switches)
         return jnp.stack(after)
 
     return _grow(stretch, state, periods, count)
@@ -118,11 +129,24 @@ def _run_exact(pieces: LinearPieces, phase: Array, p0: Array, v0: Array, periods
     """One period after another by exact steps: a lane for each tangent vector, all with the same motion."""
     lanes = jnp.ones(count)
     pieces = jax.tree.map(lambda number: number * lanes, pieces)
+    return _grow_exact(lambda k, y: advance_periods(pieces, phase, y, k, 1.0), p0, v0, periods, count)
+
+
+@eqx.filter_jit
+def _run_course(joint: Joint, path: Course, period: Array, p0: Array, v0: Array, periods: int, count: int) -> Any:
+    """The same along a drive of polynomials."""
+    lanes = jnp.ones(count)
+    joint = jax.tree.map(lambda number: number * lanes, joint)
+    return _grow_exact(lambda k, y: advance_course(joint, path, y, k * period, (k + 1.0) * period), p0, v0, periods, count)
+
+
+def _grow_exact(step: Callable[[Array, Phase], Phase], p0: Array, v0: Array, periods: int, count: int) -> Any:
+    lanes = jnp.ones(count)
     first = begin(p0 * lanes, v0 * lanes)._replace(dp=jnp.eye(2, count)[0], dv=jnp.eye(2, count)[1])
 
     def one(carry: Any, k: Array) -> Any:
         y, growth = carry
-        y = advance_periods(pieces, phase, y._replace(growth=jnp.zeros(count)), k, 1.0)
+        y = step(k, y._replace(growth=jnp.zeros(count)))
         size = jnp.exp(y.growth)
         frame, r = jnp.linalg.qr(jnp.stack([y.dp * size, y.dv * size]))
         growth = growth + jnp.log(jnp.abs(jnp.diagonal(r)))

@@ -23,7 +23,7 @@ import numpy as np
 from ..errors import BadInput
 from .family import Family, PaperCase
 from .follow import follow
-from .periodicity import periodicity
+from .periodicity import periodicity, sizes
 from .plan import Plan
 
 Array = Any
@@ -51,6 +51,8 @@ class Request:
     start: tuple[float, float]
     tile: tuple[int, ...]
     exact: bool | None = None
+    period: float | None = None
+    panels: int | None = None
 
     @property
     def names(self) -> list[str]:
@@ -76,15 +78,20 @@ class Request:
         told = {
             "family": self.family.identity(), "axes": self.axes, "start": self.start, "tile": self.tile, "exact": self.exact,
             "plan": [self.plan.periods, self.plan.skip, self.plan.samples], "version": package_version(),
+            "period": self.period, "panels": self.panels,
         }  # fmt: skip
         return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
 
 
 def request(
     family: Family, axes: Mapping[str, Any], *, periods: int = 400, skip: int = 100, samples: int = 32,
-    start: tuple[float, float] = (0.0, 0.0), exact: bool | None = None, lanes: int = LANES,
+    start: tuple[float, float] = (0.0, 0.0), exact: bool | None = None, period: float | None = None,
+    panels: int | None = None, lanes: int = LANES,
 ) -> Request:  # fmt: skip
     """A checked request for a map over one or more axes, each the name of a parameter with its values, in order of dimension.
+
+    ``exact``, ``period`` [s] and ``panels`` are those of `follow`: a drive without a period of its own, a chirp or a measured
+    base motion, needs ``period``, the time between two samples.
 
     Raises
     ------
@@ -105,7 +112,10 @@ def request(
     for size in reversed(shape):
         tile.insert(0, min(size, max(1, room)))
         room //= tile[0]
-    return Request(family, tuple(checked), Plan(periods, skip, samples), (float(start[0]), float(start[1])), tuple(tile), exact)
+    if period is not None and not 0.0 < period < np.inf:
+        raise BadInput(f"period {period}: wanted a time above 0")
+    begun, plan = (float(start[0]), float(start[1])), Plan(periods, skip, samples)
+    return Request(family, tuple(checked), plan, begun, tuple(tile), exact, period, panels)
 
 
 def compute_tile(wanted: Request, box: tuple[slice, ...]) -> tuple[dict[str, np.ndarray], str]:
@@ -116,8 +126,11 @@ def compute_tile(wanted: Request, box: tuple[slice, ...]) -> tuple[dict[str, np.
     given = {name: np.pad(g.ravel(), (0, lanes - g.size), mode="edge") for name, g in zip(wanted.names, grids)}
     system, drive = wanted.family.build(given)
     one = np.ones(lanes)
-    found, solver = follow(system, drive, wanted.start[0] * one, wanted.start[1] * one, wanted.plan, exact=wanted.exact)
-    half, speed = _sizes(system)
+    y0, dy0 = wanted.start[0] * one, wanted.start[1] * one
+    found, solver = follow(
+        system, drive, y0, dy0, wanted.plan, period=wanted.period, exact=wanted.exact, panels=wanted.panels
+    )
+    half, speed = sizes(system)
     number = {
         "lyapunov": found.lyapunov, "lyapunov_stderr": found.stderr, "unresolved": found.unresolved, "poincare": found.p,
         "period": periodicity(found.p, found.v, found.lyapunov, found.stderr, scale=half, speed=speed),
@@ -125,14 +138,6 @@ def compute_tile(wanted: Request, box: tuple[slice, ...]) -> tuple[dict[str, np.
     inside = int(np.prod(size))
     arrays = {name: np.asarray(number[name]).astype(kind) for name, kind in VARIABLES.items()}
     return {name: a[..., :inside].reshape(*a.shape[:-1], *size) for name, a in arrays.items()}, solver
-
-
-def _sizes(system: Any) -> tuple[Array, Array]:
-    """Lengths and speeds against which a return is judged: the half play, and that times the contact's frequency."""
-    if not system.has_play:
-        return 1.0, 1.0
-    half = 0.5 * np.asarray(system.contact.backlash)
-    return half, half * np.sqrt(np.asarray(system.contact.stiffness) / np.asarray(system.inertia))
 
 
 def run_map(

@@ -8,17 +8,19 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import jax.numpy as jnp
 import numpy as np
 
 from ..effects import AsymmetricGap, Contact, GapSpring, LinearGravity, Preload
 from ..effects.damping import ContactDamping
 from ..excitation import AbstractExcitation, Harmonic
+from ..sensors import SensorDelay, SensorGain, SensorOffset
+from ..solvers.exact_courses import Joint
 from ..solvers.linear_pieces import LinearPieces
 from ..system import System
 
 Array = Any
-KNOWN = (AsymmetricGap, GapSpring, LinearGravity, Preload, ContactDamping)
+KNOWN = (AsymmetricGap, GapSpring, LinearGravity, Preload, ContactDamping, SensorDelay, SensorGain, SensorOffset)
+"""Laws under which the motion stays linear between the edges; what the sensors do to it is not part of it."""
 
 
 class NormalForm(NamedTuple):
@@ -31,23 +33,33 @@ class NormalForm(NamedTuple):
     half_play: Array
 
 
-def why_not(system: System, drive: AbstractExcitation) -> str | None:
-    """Why the exact steps cannot be used, in a few words; None when they can. Parameters may be arrays over cells."""
+def not_linear(system: System) -> str | None:
+    """Why the motion is not linear between the edges of a play, in a few words; None when it is."""
     if not isinstance(system.contact, Contact):
         return "there is no play"
-    if not isinstance(drive, Harmonic):
-        return "the drive is not harmonic"
     other = sorted(name for name, effect in system.effects.items() if type(effect) not in KNOWN)
     if other:
         return f"{other[0]} is not linear between the edges"
+    if np.any(np.asarray(system.contact.backlash) <= 0.0):
+        return "the play is closed"
+    return None
+
+
+def why_not(system: System, drive: AbstractExcitation) -> str | None:
+    """Why the exact steps of a harmonic drive cannot be used; None when they can. Parameters may be arrays over cells."""
+    why = not_linear(system)
+    if why is not None:
+        return why
+    if not isinstance(drive, Harmonic):
+        return "the drive is not harmonic"
     form = normal_form(system, drive)
     p = form.pieces
     if np.any((np.asarray(p.stiffness) == 0.0) & (np.asarray(p.load) != 0.0)):
         return "a constant load acts in a play without a spring"
     if np.any(np.asarray(p.stiffness + p.contact_stiffness) <= 0.0):
         return "a contact pushes outwards"
-    if np.any(np.asarray(p.omega) <= 0.0) or np.any(np.asarray(form.half_play) <= 0.0):
-        return "the drive stands still or the play is closed"
+    if np.any(np.asarray(p.omega) <= 0.0):
+        return "the drive stands still"
     for stiffness, damping in (
         (p.stiffness, p.damping), (p.stiffness + p.contact_stiffness, p.damping + p.contact_damping),
     ):  # fmt: skip
@@ -58,7 +70,21 @@ def why_not(system: System, drive: AbstractExcitation) -> str | None:
 
 
 def normal_form(system: System, drive: Harmonic) -> NormalForm:
-    """The system in units of its half play; parameters may be arrays over cells of one shape."""
+    """The system under a harmonic drive in units of its half play; parameters may be arrays over cells of one shape."""
+    joint, middle, half = bare_joint(system)
+    # J z'' = ... + F + G x - J x''
+    by = joint.by_force if drive.as_force else joint.by_x - joint.by_bend * drive.omega**2
+    size = by * drive.amplitude
+    one = np.ones(np.broadcast_shapes(np.shape(joint.damping), np.shape(size), np.shape(drive.omega)))
+    pieces = LinearPieces(
+        one * joint.damping, one * joint.contact_damping, one * joint.stiffness, one * joint.contact_stiffness,
+        one * joint.load, one * size, one * drive.omega,
+    )  # fmt: skip
+    return NormalForm(pieces, one * drive.phase, one * middle, one * half)
+
+
+def bare_joint(system: System) -> tuple[Joint, Array, Array]:
+    """The joint in units of its half play, whatever drives it, the middle of the play and half of it [rad]."""
     assert isinstance(system.contact, Contact)
     inertia, half = system.inertia, 0.5 * system.contact.backlash
     found: dict[Any, Any] = {type(effect): effect for effect in system.effects.values()}
@@ -69,13 +95,11 @@ def normal_form(system: System, drive: Harmonic) -> NormalForm:
     middle = found[AsymmetricGap].z0 if AsymmetricGap in found else 0.0
     extra = found[ContactDamping].cc if ContactDamping in found else 0.0
     # J z'' = F + T0 - k delta - c z' - k1 (z - z1) + G (z + x) - J x''
-    size = drive.amplitude if drive.as_force else (G + inertia * drive.omega**2) * drive.amplitude
     load = constant + k1 * z1 - (k1 - G) * middle
-    # numpy: numbers that are known need no program of their own for each operation.
-    one = np.ones(jnp.broadcast_shapes(*(jnp.shape(v) for v in (inertia, half, k1, size, load, extra, drive.omega,
-        system.damper.damping, system.contact.stiffness))))  # fmt: skip
-    pieces = LinearPieces(
-        one * system.damper.damping / inertia, one * extra / inertia, one * (k1 - G) / inertia,
-        one * system.contact.stiffness / inertia, one * load / (inertia * half), one * size / (inertia * half), one * drive.omega,
+    numbers = (
+        system.damper.damping / inertia, extra / inertia, (k1 - G) / inertia, system.contact.stiffness / inertia,
+        load / (inertia * half), G / (inertia * half), -1.0 / half, 1.0 / (inertia * half),
     )  # fmt: skip
-    return NormalForm(pieces, one * drive.phase, one * middle, one * half)
+    # numpy: numbers that are known need no program of their own for each operation.
+    one = np.ones(np.broadcast_shapes(*(np.shape(v) for v in (*numbers, middle))))
+    return Joint(*(one * v for v in numbers)), one * middle, one * half

@@ -43,3 +43,14 @@ def periodicity(
     lyapunov, stderr = np.asarray(lyapunov), np.asarray(stderr)
     answer[open_ & np.isfinite(lyapunov) & (lyapunov > SIGMAS * stderr)] = CHAOTIC
     return answer
+
+
+def sizes(system: Any) -> tuple[Array, Array]:
+    """A length and a speed against which a return is judged: the half play, and that times the contact's frequency.
+
+    1 rad and 1 rad/s where there is no play; numbers, or arrays over the cells.
+    """
+    if not system.has_play:
+        return 1.0, 1.0
+    half = 0.5 * np.asarray(system.contact.backlash)
+    return half, half * np.sqrt(np.asarray(system.contact.stiffness) / np.asarray(system.inertia))

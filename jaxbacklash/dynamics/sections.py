@@ -14,6 +14,7 @@ import numpy as np
 from ..excitation import AbstractExcitation
 from ..simulation import Trajectory, simulate
 from ..system import System
+from .courses import begins
 from .follow import follow
 from .plan import Plan
 
@@ -46,7 +47,7 @@ def stroboscopic(
     found, _ = follow(system, drive, y0 * one, dy0 * one, plan, period=period)
     length = period if period is not None else 2.0 * np.pi / float(drive.omega)  # type: ignore[attr-defined]
     whole = np.arange(plan.periods - points + 1, plan.periods + 1)
-    return Section(whole * length, np.asarray(found.p)[:, 0], np.asarray(found.v)[:, 0])
+    return Section(float(begins(drive)) + whole * length, np.asarray(found.p)[:, 0], np.asarray(found.v)[:, 0])
 
 
 def poincare(

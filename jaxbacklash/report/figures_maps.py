@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import cycle
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ SIGNED = LinearSegmentedColormap.from_list("signed", ["#134a78", MEASURED, "#f4f
 SIGNED.set_bad(GAP)
 PERIODS = 6
 """Periods that have a colour of their own; longer ones share one."""
-PERIOD_COLOURS = ["#8a8f98", "#3b0f0a", "#dcecf7", "#9cc9e8", "#2b83c6", "#0f9d78", "#8ccf6a", "#f1d33c", "#d9a01a"]
+PERIOD_COLOURS = ["#8a8f98", "#a32c0e", "#dcecf7", "#9cc9e8", "#2b83c6", "#0f9d78", "#8ccf6a", "#f1d33c", "#d9a01a"]
 PERIOD_NAMES = ["unresolved", "chaotic", *(str(T) for T in range(1, PERIODS + 1)), f"over {PERIODS}"]
 BASINS = [MEASURED, MODEL, HELDOUT, "#9467bd", "#e3c130", "#5b3a1e", "#d977a8", "#4a4f57"]
 LABELS = {"inverse_alpha": "1/α", "zeta": "ζ", "Omega": "Ω"}
@@ -73,8 +74,9 @@ def exponent_and_period_map(
 
 @drawn_in_style
 def exponent_curve(
-    x: Any, exponent: Any, stderr: Any, *, name: str, unit: str, exponent_unit: str, samples: Any = None, title: str = ""
-) -> Figure:
+    x: Any, exponent: Any, stderr: Any, *, name: str, unit: str, exponent_unit: str, samples: Any = None, title: str = "",
+    play: tuple[float, float] | None = (-1.0, 1.0), position: str = "p",
+) -> Figure:  # fmt: skip
     """The largest exponent against one parameter with its error bar; below, if given, the bifurcation diagram.
 
     Parameters
@@ -83,6 +85,8 @@ def exponent_curve(
     exponent, stderr : (N,)
     name, unit, exponent_unit : words for the axes
     samples : (S, N) stroboscopic samples of the position [half plays, or the system's unit]; None: only the curve
+    play : edges of the play in the samples' unit, drawn as a band; None: no band
+    position : words for the samples' axis
 
     Returns
     -------
@@ -102,21 +106,27 @@ def exponent_curve(
     top.set_title(title)
     top.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2)
     if samples is not None:
-        scatter_samples(axes[1], x, np.asarray(samples), INK)
+        scatter_samples(axes[1], x, np.asarray(samples), MEASURED, play)
+        axes[1].set_ylabel(f"{position} at whole periods")
     axes[-1].set_xlabel(axis_label(name, unit))
     return figure
 
 
-def scatter_samples(ax: Axes, x: np.ndarray, samples: np.ndarray, colour: str, label: str | None = None) -> None:
-    """Stroboscopic samples against a parameter, as dots."""
+def scatter_samples(ax: Axes, x: np.ndarray, samples: np.ndarray, colour: str, play: tuple[float, float] | None) -> None:
+    """Stroboscopic samples against a parameter, as dots; pixels keep their colour, so it may not be that of ink."""
     many = np.broadcast_to(x, samples.shape)
-    ax.plot(many.ravel(), samples.ravel(), ".", ms=1.6, mew=0, color=colour, rasterized=True, label=label)
-    ax.set_ylabel("p at whole periods")
-    ax.axhspan(-1.0, 1.0, color=GAP, alpha=0.15, lw=0)
+    size = float(np.clip(300.0 / max(x.size, 1), 1.4, 3.0))  # few columns leave room for dots that are seen
+    ax.plot(many.ravel(), samples.ravel(), ".", ms=size, mew=0, color=colour, rasterized=True)
+    if play is not None:
+        ax.axhspan(*play, color=GAP, alpha=0.15, lw=0)
+    ax.grid(visible=False)
 
 
 @drawn_in_style
-def bifurcation_diagram(x: Any, branches: dict[str, Any], *, name: str, unit: str, length: str = "half plays") -> Figure:
+def bifurcation_diagram(
+    x: Any, branches: dict[str, Any], *, name: str, unit: str, length: str = "half plays",
+    play: tuple[float, float] | None = (-1.0, 1.0),
+) -> Figure:  # fmt: skip
     """Stroboscopic samples against one parameter: swept up, swept down, and from many starts, one above the other.
 
     Parameters
@@ -124,6 +134,7 @@ def bifurcation_diagram(x: Any, branches: dict[str, Any], *, name: str, unit: st
     x : (N,) values of the parameter
     branches : by a name for the legend, (..., N) samples
     name, unit : of the parameter; length: unit of the samples
+    play : edges of the play in that unit, drawn as a band; None: no band
 
     Returns
     -------
@@ -135,19 +146,19 @@ def bifurcation_diagram(x: Any, branches: dict[str, Any], *, name: str, unit: st
         return empty_figure("No samples to draw.")
     figure = new_figure(1.1 + 1.7 * len(shown))
     axes = figure.subplots(len(shown), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
-    for ax, (label, samples), colour in zip(axes, shown.items(), (MEASURED, MODEL, INK, HELDOUT)):
-        ax.axhspan(-1.0, 1.0, color=GAP, alpha=0.15, lw=0)
-        many = np.broadcast_to(x, samples.shape)
-        ax.plot(many.ravel(), samples.ravel(), ".", ms=1.1, mew=0, color=colour, rasterized=True)
-        ax.set(ylabel=f"p [{length}]", xlim=(x.min(), x.max()))
+    for ax, (label, samples), colour in zip(axes, shown.items(), cycle((MEASURED, MODEL, HELDOUT))):
+        scatter_samples(ax, x, samples, colour, play)
+        ax.set(ylabel=f"{'p' if length == 'half plays' else 'z'} [{length}]", xlim=(x.min(), x.max()))
         ax.set_title(label)
-        ax.grid(visible=False)
     axes[-1].set_xlabel(axis_label(name, unit))
     return figure
 
 
 @drawn_in_style
-def basin_picture(p: Any, v: Any, attractor: Any, *, words: Sequence[str], samples: Sequence[Any] = ()) -> Figure:
+def basin_picture(
+    p: Any, v: Any, attractor: Any, *, words: Sequence[str], samples: Sequence[Any] = (), length: str = "half plays",
+    play: tuple[float, float] | None = (-1.0, 1.0),
+) -> Figure:  # fmt: skip
     """Which attractor each start leads to.
 
     Parameters
@@ -156,6 +167,7 @@ def basin_picture(p: Any, v: Any, attractor: Any, *, words: Sequence[str], sampl
     attractor : (M, N) number of the attractor, -1 where none was settled on
     words : a name for each attractor
     samples : for each attractor, (2, S) its stroboscopic positions and speeds; drawn as dots
+    length, play : unit of the starts, and the edges of the play in it; None: no edges
 
     Returns
     -------
@@ -163,22 +175,28 @@ def basin_picture(p: Any, v: Any, attractor: Any, *, words: Sequence[str], sampl
     """
     p, v = column(p), column(v)
     number = np.asarray(attractor).T
-    count = max(1, len(words))
+    # No colour stands in the legend that is not in the picture.
+    first = 0 if (number < 0).any() or not words else 1
+    shown = ["unsettled", *words][first:]
+    colours = [GAP, *(BASINS[k % len(BASINS)] for k in range(len(words)))][first:]
     figure = new_figure(MEDIUM + 1.0)
     ax = figure.add_subplot()
-    colours = [GAP, *(BASINS[k % len(BASINS)] for k in range(count))]
     image = ax.imshow(
-        number + 1, cmap=ListedColormap(colours), norm=BoundaryNorm(np.arange(-0.5, count + 1.5), count + 1), alpha=0.75,
+        number + 1 - first, cmap=ListedColormap(colours), norm=BoundaryNorm(np.arange(-0.5, len(shown)), len(shown)),
         **_imaged((*_sides(p), *_sides(v))),
     )  # fmt: skip
-    bar = figure.colorbar(image, ax=ax, ticks=range(count + 1))
-    bar.ax.set_yticklabels(["unsettled", *words], fontsize=8.0)
-    for dots in samples:
+    bar = figure.colorbar(image, ax=ax, ticks=range(len(shown)))
+    bar.ax.set_yticklabels(shown, fontsize=8.0)
+    for k, dots in enumerate(samples):
         dots = np.asarray(dots, dtype=float)
-        ax.plot(dots[0], dots[1], "o", color="white", mec=INK, mew=0.8, ms=4.0 if dots.shape[1] < 30 else 1.5)
-    for edge in (-1.0, 1.0):
-        ax.axvline(edge, color=INK, lw=0.6, ls="--")
-    ax.set(xlabel="p at the start [half plays]", ylabel="p′ at the start", xlim=_sides(p), ylim=_sides(v))
+        many = dots.shape[1] >= 30
+        # Each in the colour of its basin, ringed so that it shows on every one.
+        ring, size = (0.3, 2.0) if many else (1.3, 6.5)
+        ax.plot(dots[0], dots[1], "o", color=BASINS[k % len(BASINS)], mec="white", mew=ring, ms=size)
+    for edge in play or ():
+        ax.axvline(edge, color="black", lw=0.8, ls="--")
+    letter = "p" if length == "half plays" else "z"
+    ax.set(xlabel=f"{letter} at the start [{length}]", ylabel=f"{letter}′ at the start", xlim=_sides(p), ylim=_sides(v))
     ax.grid(visible=False)
     return figure
 
