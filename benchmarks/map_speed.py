@@ -9,10 +9,11 @@ is the median, over regular cells, of the difference from a referee: our exponen
 map's motions end, on their attractors, with the same tangent vector, and follow the same periods. "As accurate" means the error
 of our own run against that referee.
 
-A regular cell's tangent vector turns as it shrinks, and where in its turn a finite run ends moves the exponent by some 6e-5. A
-step over an edge errs in the tangent by the order of the step, since the stiffness jumps there; over 300 periods the turn is
-then lost, and the error stays near 6e-5 until the steps are many thousands: measured with equal starts on 158 cells 1.6e-4 with
-64 steps, 5.5e-5 with 256 and with 4096, 3.1e-5 with 16384. It needs gcc and numba.
+The floor of the C program's error, some 6e-5, is likely the tangent vector's turn: it turns as it shrinks, and where in its
+turn a finite run ends moves a regular exponent by as much. A step over an edge errs in the tangent by the order of the step,
+since the stiffness jumps there; over 300 periods the turn is then lost, and the error stays near 6e-5 until the steps are many
+thousands: measured with equal starts on 158 cells 1.6e-4 with 64 steps, 5.5e-5 with 256 and with 4096, 3.1e-5 with 16384. It
+needs gcc and numba.
 """
 
 from __future__ import annotations

@@ -246,7 +246,8 @@ def search(
         begin = guess
         if attempt:
             begin = eqx.tree_at(lambda u: u.theta, guess, _elsewhere(problem, rng))
-        solution = minimise(problem, begin, solver)
+        # Another start only has to show where it arrives.
+        solution = minimise(problem, begin, ArrowLevenbergMarquardt(atol=0.1) if attempt else solver)
         tried.append((float(solution.stats["cost"]), attempt, solution))
     tried = [entry for entry in tried if np.isfinite(entry[0])]
     if not tried:

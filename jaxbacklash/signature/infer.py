@@ -25,7 +25,7 @@ from .exponent_map import ExponentMap
 from .levels import Level
 
 FALSE_ALARM, MISSED = 0.02, 0.05
-"""Rates of wrong verdicts: benchmarks.play_from_exponents and benchmarks.chaos_verdicts measure them."""
+"""Rates of wrong verdicts that `jaxbacklash.timeseries` is held to; benchmarks.chaos_verdicts measures them."""
 SYSTEMATIC = 0.05
 """Error of a measured exponent that its own interval does not hold, as a share of it."""
 DRIVE_ERROR = 0.01
