@@ -120,19 +120,22 @@ def follow_exact(pieces: LinearPieces, phase: Array, p0: Array, v0: Array, stops
 
     On a CPU one block of lanes runs to its end before the next begins; elsewhere all run together.
     """
+    given = pieces, phase, p0, v0, stops
+    if p0.shape[0] <= BLOCK:
+        return _follow_block(*given, plan)
+    found: Followed = jax.lax.platform_dependent(
+        *given, cpu=partial(_block_by_block, plan=plan), default=partial(_follow_block, plan=plan)
+    )
+    return found
+
+
+def _block_by_block(pieces: LinearPieces, phase: Array, p0: Array, v0: Array, stops: Array, plan: Plan) -> Followed:
     lanes = p0.shape[0]
-    if jax.default_backend() != "cpu" or lanes <= BLOCK:
-        return _follow_block(pieces, phase, p0, v0, stops, plan)
     blocks = -(-lanes // BLOCK)
     given = jax.tree.map(
         lambda a: jnp.pad(a, (0, blocks * BLOCK - lanes), mode="edge").reshape(blocks, BLOCK), (pieces, phase, p0, v0)
     )
-
-    def one(block: Any) -> Followed:
-        pieces, phase, p0, v0 = block
-        return _follow_block(pieces, phase, p0, v0, stops, plan)
-
-    found = jax.lax.map(one, given)
+    found = jax.lax.map(lambda block: _follow_block(block[0], block[1], block[2], block[3], stops, plan), given)
     return jax.tree.map(lambda a: jnp.moveaxis(a, 0, -2).reshape(*a.shape[1:-1], -1)[..., :lanes], found)
 
 
