@@ -337,7 +337,7 @@ class Search:
         lowest = min(t.criterion for t in tried.values())
         slack = max(1.0, (1.0 - AS_WELL) * (current.criterion - lowest))
         level = [n for n, t in tried.items() if t.criterion - lowest < slack]
-        return min(level, key=lambda n: (len(tried[n].free), measures_only(self.bench.laws[n]), tried[n].criterion))
+        return min(level or tried, key=lambda n: (len(tried[n].free), measures_only(self.bench.laws[n]), tried[n].criterion))
 
     def nibbles(self, before: Trial, after: Trial, least: float) -> bool:
         """Whether an addition takes away only little of a misfit of which a clear rest remains."""

@@ -209,7 +209,8 @@ class Workbench:
     def _trial(
         self, problem: Problem, solution: Any, names: frozenset[str], free: tuple[str, ...], tied: bool, patience: int
     ) -> Trial:
-        cost = float(solution.stats["cost"])
+        # What was not finite anywhere is as bad as can be, and compares as such.
+        cost = float(np.nan_to_num(solution.stats["cost"], nan=np.inf))
         system = problem.system
         moved = np.asarray(problem.parameters(solution.value.theta))
         fitted = with_values(system, dict(zip(values(system), moved)))
