@@ -82,4 +82,4 @@ def test_scipy_runs_in_processes_of_its_own():
     """After jax has started its threads: spawned, so that nothing can hang."""
     found = accuracy.by_scipy(np.array([3.0]), 22, 2, 1)
     ours = accuracy.by_ours(np.array([3.0]), 22, 2, np.zeros((2, 1)))
-    np.testing.assert_allclose(found.samples[:3], ours.samples[-len(found.samples) :][:3], atol=1e-5)
+    np.testing.assert_allclose(found.samples[-len(ours.samples) :], ours.samples, atol=1e-5)

@@ -83,7 +83,8 @@ def _moved_json(step: Moved) -> dict[str, float | None]:
 
 def _checked(fit: Fit) -> dict[str, Any]:
     """Other methods beside the fit, the equation-error estimate with the effects that were found in its regression."""
-    if fit.start is None or not fit.system.effects:
+    # Where the link's motion is not in the record there is nothing to regress on.
+    if fit.start is None or not fit.system.effects or fit.records[0].kind == "transmitted":
         return cross_check(fit)
     inertia = None if "inertia" in fit.free else float(fit.system.inertia)
     play, spring = isinstance(fit.system.contact, Contact), fit.system.contact is not None
