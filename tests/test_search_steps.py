@@ -1,0 +1,98 @@
+"""What the search does where a fit has stuck, on models that are only numbers."""
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+
+from jaxbacklash.criticism.search import Search
+
+
+@dataclass(frozen=True)
+class Model:
+    """As much of a fitted model as the search looks at."""
+
+    names: frozenset[str]
+    cost: float
+    tied: bool = True
+    done: bool = True
+    misfit: float = 1.0
+    free: tuple[str, ...] = ("backlash",)
+    effects: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def criterion(self) -> float:
+        return 2.0 * self.cost + 10.0 * len(self.free)
+
+
+class Bench:
+    """Answers every fit from a list, and notes what was asked for."""
+
+    def __init__(self, *answers: Model) -> None:
+        self.answers, self.asked = list(answers), []
+        self.laws = {"gravity": SimpleNamespace(states=(), absorbs=()), "preload": SimpleNamespace(states=(), absorbs=())}
+
+    def effects(self, trial):
+        return dict.fromkeys(trial.names, "as fitted")
+
+    def grips(self, names):
+        return False
+
+    def fit(self, effects, start=None, *, tied=False, patience=25, **_):
+        self.asked.append((frozenset(effects), tied))
+        return self.answers.pop(0)
+
+
+def significant(monkeypatch, size):
+    monkeypatch.setattr("jaxbacklash.criticism.search.significance", lambda trial, name: size)
+
+
+def test_a_model_known_from_a_stuck_fit_is_fitted_again(monkeypatch):
+    significant(monkeypatch, 1.4)
+    both = Model(frozenset({"gravity", "preload"}), cost=100.0, free=("backlash", "a", "b"))
+    search = Search(Bench(Model(frozenset({"gravity"}), cost=101.0)))
+    search.known[frozenset({"gravity"}), True] = Model(frozenset({"gravity"}), cost=1e8)
+    assert search.without(both, "preload").cost == 101.0
+    assert search.bench.asked == [(frozenset({"gravity"}), True)]
+
+
+def test_a_model_known_well_is_not_fitted_again(monkeypatch):
+    significant(monkeypatch, 3.0)
+    both = Model(frozenset({"gravity", "preload"}), cost=100.0)
+    search = Search(Bench())
+    search.known[frozenset({"gravity"}), True] = Model(frozenset({"gravity"}), cost=104.0)
+    assert search.without(both, "preload").cost == 104.0
+    assert not search.bench.asked
+
+
+def test_a_tied_fit_that_sticks_is_let_go_first():
+    before = Model(frozenset(), cost=100.0)
+    stuck = Model(frozenset({"gravity"}), cost=1e6, misfit=50.0, done=False)
+    free = Model(frozenset({"gravity"}), cost=80.0, tied=False)
+    found = Model(frozenset({"gravity"}), cost=90.0)
+    search = Search(Bench(stuck, free, found))
+    assert search.joined({"gravity": "as fitted"}, before) is found
+    assert [tied for _, tied in search.bench.asked] == [True, False, True]
+    assert search.known[frozenset({"gravity"}), False] is free
+
+
+def test_a_tied_fit_that_stuck_is_not_believed_over_free_windows():
+    free = Model(frozenset({"gravity"}), cost=100.0, tied=False, misfit=1.0)
+    stuck = Model(frozenset({"gravity"}), cost=150.0, misfit=1.2, done=False)
+    assert Search(Bench(stuck)).settle(free) is free
+    honest = Model(frozenset({"gravity"}), cost=150.0, misfit=1.2, done=True)
+    assert Search(Bench(honest)).settle(free) is honest
+
+
+def test_close_candidates_are_finished_before_one_is_chosen():
+    current = Model(frozenset(), cost=1000.0)
+    ahead = Model(frozenset({"gravity"}), cost=110.0, done=False)
+    close = Model(frozenset({"preload"}), cost=120.0, done=False)
+    better = Model(frozenset({"preload"}), cost=90.0)
+    search = Search(Bench(ahead, better))
+    tried = search.finished(current, {"gravity": ahead, "preload": close})
+    assert tried["preload"] is better
+    far = Model(frozenset({"preload"}), cost=900.0, done=False)
+    search = Search(Bench())
+    assert search.finished(current, {"gravity": ahead, "preload": far})["preload"] is far
+    assert not search.bench.asked
+
+
