@@ -18,7 +18,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
-from .exact_periods import Phase
+from .exact_periods import Phase, rates
 
 Array = Any
 
@@ -89,11 +89,7 @@ class Along(diffrax.ODETerm):
         stiffness = joint.stiffness + contact * joint.contact_stiffness
         piece, share = _place(course, t * period)
         push = joint.load + y.side * joint.contact_stiffness + _input(joint, course, piece, share)[0] / course.dt**2
-        zero = jnp.zeros_like(y.p)
-        return Phase(
-            period * y.v, period * (push - damping * y.v - stiffness * y.p),
-            period * y.dv, -period * (damping * y.dv + stiffness * y.dp), zero, zero, zero,
-        )  # fmt: skip
+        return rates(y, period, push, damping, stiffness)
 
 
 class ExactCourse(diffrax.AbstractSolver):

@@ -34,6 +34,15 @@ class Phase(NamedTuple):
     unresolved: Array
 
 
+def rates(y: Phase, period: Array, push: Array, damping: Array, stiffness: Array) -> Phase:
+    """Rates of change, time in periods, of a motion and its tangent vector between two edges; ``push`` is the force at rest."""
+    zero = jnp.zeros_like(y.p)
+    return Phase(
+        period * y.v, period * (push - damping * y.v - stiffness * y.p),
+        period * y.dv, -period * (damping * y.dv + stiffness * y.dp), zero, zero, zero,
+    )  # fmt: skip
+
+
 class Pieces(diffrax.ODETerm):
     """The vector field of the oscillator in periods of its drive; ``args`` is the pair of `LinearPieces` and phase [rad]."""
 
@@ -47,11 +56,7 @@ class Pieces(diffrax.ODETerm):
         damping, stiffness = s.damping + contact * s.contact_damping, s.stiffness + contact * s.contact_stiffness
         period = 2.0 * jnp.pi / s.omega
         force = s.load + y.side * s.contact_stiffness + s.amplitude * jnp.cos(2.0 * jnp.pi * t + phase)
-        zero = jnp.zeros_like(y.p)
-        return Phase(
-            period * y.v, period * (force - damping * y.v - stiffness * y.p),
-            period * y.dv, -period * (damping * y.dv + stiffness * y.dp), zero, zero, zero,
-        )  # fmt: skip
+        return rates(y, period, force, damping, stiffness)
 
 
 class ExactPeriods(diffrax.AbstractSolver):
