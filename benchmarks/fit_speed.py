@@ -26,7 +26,8 @@ import numpy as np
 
 import jaxbacklash as jb
 from benchmarks.peers import numba_errors_in_x, numba_shooting
-from jaxbacklash.fitting.fit import prepare, search
+from jaxbacklash.fitting.fit import prepare
+from jaxbacklash.fitting.search import search
 from jaxbacklash.parameters import values
 from jaxbacklash.records import Record, write_record
 from tests.independent.generator import make_excitation, measure, simulate_truth

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import equinox as eqx
 import numpy as np
 
-from ..fitting.fit import TIES
+from ..fitting.search import TIES
 from ..mechanics import AbstractEffect
 from ..parameters import specs, with_values
 from .workbench import Trial, Workbench, strengths, width

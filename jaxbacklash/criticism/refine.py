@@ -13,8 +13,9 @@ import numpy as np
 from ..errors import BadInput
 from ..fitting.equation_error import Start
 from ..fitting.estimates import judge
-from ..fitting.fit import ABSOLUTE, SCORE_WINDOW, TIES, Fit, prepare, silent
+from ..fitting.fit import ABSOLUTE, SCORE_WINDOW, Fit, prepare
 from ..fitting.score import Score, score
+from ..fitting.search import TIES, silent
 from ..fitting.setup import base_system, first_guess, free_names
 from ..fitting.shooting import Problem, Unknowns
 from ..precision import require_double_precision

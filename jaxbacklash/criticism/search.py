@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
-from ..fitting.fit import ADEQUATE, silent
+from ..fitting.search import ADEQUATE, silent
 from ..mechanics import AbstractEffect
 from ..parameters import specs, values, with_values
 from .candidates import Candidate, rank

@@ -14,9 +14,10 @@ from typing import Any
 import equinox as eqx
 import numpy as np
 
-from ..fitting.fit import ADEQUATE, LOOSE, TIES, freedom, prepare, tie_windows
+from ..fitting.fit import prepare
 from ..fitting.held import held, search_held
 from ..fitting.levenberg import ArrowLevenbergMarquardt, minimise
+from ..fitting.search import ADEQUATE, LOOSE, TIES, freedom, tie_windows
 from ..fitting.setup import first_guess, free_names, held_system, make_problem
 from ..fitting.shooting import Problem, Unknowns
 from ..fitting.windows import Layout, Windows

@@ -1,0 +1,203 @@
+r"""The search for a minimum: cheaply on a stretch of the record, then on all of it, then with its windows tied."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import equinox as eqx
+import numpy as np
+import optimistix as optx
+
+from ..errors import NoAnswer
+from ..system import System
+from .held import correlation, held, search_held
+from .levenberg import ArrowLevenbergMarquardt, minimise
+from .setup import first_guess, make_problem
+from .shooting import Problem, Unknowns
+from .stretch import excess_of, stretch, told
+from .windows import Windows
+
+LOOSE = 2.5
+"""A run along the smoothed base motion may miss by this much before the base motion is let free within its noise."""
+ADEQUATE = 1.25
+"""Windows are tied into one trajectory only where the untied misfit is below this many noises: else the model is wrong."""
+TIES = ((100.0,), (1.0, 100.0), (1.0,))
+"""How sharply windows are tied, in turn, and what is tried next where that fails: sharply at once; a loose tie to find the
+trajectory and a sharp one to make it one; the loose one alone."""
+
+
+NEAR = 0.1
+"""How near to the minimum a search comes that is not the last, as `ArrowLevenbergMarquardt.atol`."""
+
+
+def silent(stage: str, share: float) -> None:
+    """Tell nobody how far the work is."""
+
+
+@dataclass(frozen=True)
+class Found:
+    """Where a search ended; ``covariance`` (q, q) in the parameters' own units."""
+
+    problem: Problem
+    unknowns: Unknowns
+    covariance: np.ndarray
+    cost: float
+    agreeing: int
+    tried: int
+    tied: bool
+    steps: int
+
+
+def search(
+    system: System,
+    windows: Windows,
+    free: Sequence[str],
+    *,
+    starts: int,
+    seed: int,
+    progress: Callable[[str, float], None] = silent,
+) -> Found:
+    """Minimise the misfit over free windows from several starts, then tie the best one's windows into one trajectory."""
+    problem = make_problem(system, windows, free)
+    if held(system):
+        return _search_held(problem, free, starts=starts, seed=seed, progress=progress)
+    best, steps, agreeing, tried = _from_starts(problem, first_guess(problem), max(1, starts), seed, progress)
+    cost = float(best.stats["cost"])
+    tied = False
+    if np.sqrt(2.0 * cost / freedom(best.value, windows)) < ADEQUATE:
+        progress("tying the windows into one trajectory", 0.7)
+        for ties in TIES:
+            joined, solution, taken = tie_windows(problem, best.value, ties)
+            steps += taken
+            after = float(solution.stats["cost"])
+            # Tied windows may disagree where a chaotic record and a slightly wrong model part ways; then they stay apart.
+            if np.sqrt(2.0 * after / freedom(solution.value, windows, tied=True)) < ADEQUATE:
+                best, problem, cost, tied = solution, joined, after, True
+                break
+    if not tied:
+        best = minimise(problem, best.value, ArrowLevenbergMarquardt())
+        cost, steps = float(best.stats["cost"]), steps + int(best.stats["steps"])
+    scale = np.sum(np.asarray(problem.directions), axis=0)
+    covariance = _inverse(np.asarray(best.stats["schur"])) * np.outer(scale, scale)
+    return Found(problem, best.value, covariance, cost, agreeing, tried, tied, steps)
+
+
+def _from_starts(
+    problem: Problem, guess: Unknowns, starts: int, seed: int, progress: Callable[[str, float], None]
+) -> tuple[optx.Solution, int, int, int]:
+    """Free windows from several starts: the best solution, the steps taken, and how many starts agree of how many tried.
+
+    They are compared on a stretch of the record where it tells all parameters, and only the best goes on to the whole.
+    """
+    steps = 0
+    for part, begin in (stretch(problem, guess), (problem, guess)):
+        if part is None:
+            continue
+        arrived = _arrive(part, begin, starts, seed, progress)
+        steps += sum(int(one.stats["steps"]) for one in arrived[:1])
+        if not arrived or (part is not problem and not told(arrived[0], part)):
+            continue
+        best, excess = arrived[0], excess_of(arrived[0], part)
+        agreeing = sum(float(one.stats["cost"] - best.stats["cost"]) < 2.0 * excess for one in arrived)
+        if part is not problem:
+            progress("fitting, the whole record", 0.55)
+            whole = eqx.tree_at(lambda u: u.theta, guess, best.value.theta)
+            best = minimise(problem, whole, ArrowLevenbergMarquardt(atol=NEAR))
+            steps += int(best.stats["steps"])
+        if np.isfinite(best.stats["cost"]):
+            return best, steps, agreeing, len(arrived)
+    raise NoAnswer("no start led to a finite misfit: the record may hold something else than this model's motion")
+
+
+def _arrive(
+    problem: Problem, guess: Unknowns, starts: int, seed: int, progress: Callable[[str, float], None]
+) -> list[optx.Solution]:
+    """Where each start arrives, the best first."""
+    rng = np.random.default_rng(seed)
+    arrived = []
+    for attempt in range(starts):
+        progress(f"fitting, start {attempt + 1} of {starts}", 0.05 + 0.5 * attempt / starts)
+        begin = eqx.tree_at(lambda u: u.theta, guess, _elsewhere(problem, rng)) if attempt else guess
+        arrived.append(minimise(problem, begin, ArrowLevenbergMarquardt(atol=NEAR)))
+    return sorted((one for one in arrived if np.isfinite(one.stats["cost"])), key=lambda one: float(one.stats["cost"]))
+
+
+def _elsewhere(problem: Problem, rng: np.random.Generator) -> np.ndarray:
+    """Another point to start from: values that must keep their sign move by up to a factor of 1.6; others by a little of
+    their scale."""
+    shift = rng.uniform(-0.4, 0.6, problem.directions.shape[1]) * np.where(problem.shrink, 1.0, 0.3)
+    return np.clip(shift, problem.lower, problem.upper)
+
+
+def _search_held(
+    problem: Problem, free: Sequence[str], *, starts: int, seed: int, progress: Callable[[str, float], None]
+) -> Found:
+    """`search` for a link that friction holds: one run through the record from each starting point, then, where the model is
+    adequate, the input moves with it."""
+    rng = np.random.default_rng(seed)
+    tried = []
+    for attempt in range(max(1, starts)):
+        said = f"fitting, start {attempt + 1} of {max(1, starts)}"
+        progress(said, 0.05 + 0.6 * attempt / max(1, starts))
+        theta = _elsewhere(problem, rng) if attempt else np.zeros(len(free))
+        tried.append(search_held(problem, theta, limit=30 if not attempt else 15))
+    tried = [entry for entry in tried if np.isfinite(entry[1]["cost"])]
+    if not tried:
+        raise NoAnswer("no start led to a finite misfit: the record may hold something else than this model's motion")
+    unknowns, seen, steps = min(tried, key=lambda entry: float(entry[1]["cost"]))
+    cost = float(seen["cost"])
+    w = problem.windows
+    count = freedom(unknowns, w, tied=True)
+    agreeing = sum(float(entry[1]["cost"]) - cost < 0.01 * cost for entry in tried)
+    tied = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1]))
+    adequate = np.sqrt(2.0 * cost / count) < LOOSE
+    if adequate:
+        progress("letting the base motion follow its own noise", 0.75)
+        joined, solution, taken = tie_windows(problem, unknowns, TIES[0], limit=20)
+        after = float(solution.stats["cost"])
+        if after < cost:
+            tied, unknowns, seen, cost, steps = joined, solution.value, solution.stats, after, steps + taken
+        adequate = np.sqrt(2.0 * cost / count) < ADEQUATE
+    excess = 1.0
+    if not adequate:
+        residual = np.asarray(seen["predicted"].motion) - np.asarray(w.measured)
+        excess = 2.0 * cost / count * correlation(residual, np.asarray(w.weight))
+    scale = np.sum(np.asarray(problem.directions), axis=0)
+    covariance = excess * _inverse(np.asarray(seen["schur"])) * np.outer(scale, scale)
+    return Found(tied, unknowns, covariance, cost, agreeing, len(tried), True, steps)
+
+
+def tie_windows(
+    problem: Problem, unknowns: Unknowns, ties: Sequence[float], *, limit: int = 60
+) -> tuple[Problem, optx.Solution, int]:
+    """Tie the windows as sharply as ``ties`` say, one after the other: the tied problem, its solution, the steps taken."""
+    # Free windows end close to the tied ones: a damped step would only fight the ties, which are stiff.
+    solver, steps = ArrowLevenbergMarquardt(damping=1e-9, limit=limit), 0
+    for tightness in ties:
+        problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(tightness))
+        solution = minimise(problem, unknowns, solver)
+        unknowns, steps = solution.value, steps + int(solution.stats["steps"])
+    return problem, solution, steps
+
+
+def freedom(unknowns: Unknowns, windows: Windows, *, tied: bool = False) -> float:
+    """Samples less the unknowns: each window's own spline coefficients and, unless it is tied to the one before, its start."""
+    samples = float(np.sum(np.asarray(windows.weight) > 0.0))
+    moving = float(np.sum(np.asarray(windows.input_weight) > 0.0))
+    used = float(np.sum(np.any(np.asarray(windows.weight) > 0.0, axis=1)))
+    starts = used - (float(np.sum(np.asarray(windows.tie))) if tied else 0.0)
+    return samples + moving - used * windows.intervals - starts * unknowns.starts.shape[0]
+
+
+def _inverse(schur: np.ndarray) -> np.ndarray:
+    scale = np.sqrt(np.maximum(np.diag(schur), 0.0))
+    alive = scale > 0.0
+    inverse = np.full(schur.shape, 0.0)
+    inverse[np.diag_indices_from(inverse)] = np.inf
+    if np.any(alive):
+        core = schur[np.ix_(alive, alive)] / np.outer(scale[alive], scale[alive])
+        inverse[np.ix_(alive, alive)] = np.linalg.pinv(core, rcond=1e-14, hermitian=True) / np.outer(
+            scale[alive], scale[alive]
+        )
+    return inverse
