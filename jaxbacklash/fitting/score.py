@@ -16,6 +16,9 @@ from .levenberg import ArrowLevenbergMarquardt, minimise
 from .shooting import Problem, Unknowns, residuals
 from .windows import Layout
 
+NEAR = 1e-4
+"""How much of half the sum of squares, in units of the noise, may be left to gain a window when a score is told."""
+
 
 class Score(eqx.Module):
     """The misfit of one record in units of the noise.
@@ -66,7 +69,8 @@ def score(problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 
         tie[first : first + count] *= (index % group) != group - 1
     still = eqx.tree_at(lambda p: (p.windows.tie, p.tie), still, (tie, np.asarray(1.0)))
     begin = Unknowns(np.zeros(unknowns.theta.shape), unknowns.starts, unknowns.coefficients)
-    solution = minimise(still, begin, ArrowLevenbergMarquardt(atol=0.03, damping=1e-6, limit=20))
+    near = NEAR * max(1, int(problem.windows.used))
+    solution = minimise(still, begin, ArrowLevenbergMarquardt(atol=near, damping=1e-6, limit=20))
     found = solution.value
     predicted = solution.stats["predicted"]
     scores = tuple(_summarise(still, found, predicted, layout, group, i) for i in range(len(layout.first)))

@@ -69,11 +69,13 @@ def _least_squares(samples: int, first: float, spacing: float) -> tuple[Any, Any
     count = int(np.floor(t[-1] / spacing + 1e-9)) + 1 + DEGREE
     design = BSpline.design_matrix(t, knots(0.0, spacing, count), DEGREE).tocsr()
     transposed = design.T.tocsr()
-    gram = (transposed @ design).todia()
+    # Every sample sees the same number of splines, next to one another: the bands are sums over samples.
+    rows = design.data.reshape(samples, DEGREE + 1)
+    leading = design.indices[:: DEGREE + 1]
     bands = np.zeros((DEGREE + 1, count))
-    for offset, diagonal in zip(gram.offsets, gram.data):
-        if 0 <= offset <= DEGREE:
-            bands[DEGREE - offset] = np.pad(diagonal, (0, max(0, count - diagonal.size)))[:count]
+    for i in range(DEGREE + 1):
+        for j in range(i, DEGREE + 1):
+            bands[DEGREE - (j - i)] += np.bincount(leading + j, rows[:, i] * rows[:, j], count)
     # The last intervals may hold few samples: a whisper of ridge keeps them defined.
     bands[DEGREE] += 1e-10 * bands[DEGREE].max()
     return design, transposed, cholesky_banded(bands)
