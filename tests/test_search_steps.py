@@ -1,9 +1,9 @@
 """What the search does where a fit has stuck, on models that are only numbers."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
-from jaxbacklash.criticism.search import Search
+from jaxbacklash.criticism.search import Search, Step
 
 
 @dataclass(frozen=True)
@@ -96,3 +96,24 @@ def test_close_candidates_are_finished_before_one_is_chosen():
     assert not search.bench.asked
 
 
+class Law(SimpleNamespace):
+    """A law by what it contains."""
+
+    def __call__(self):
+        return self
+
+
+def test_a_law_is_reduced_to_the_simpler_one_that_does_as_well(monkeypatch):
+    significant(monkeypatch, 100.0)
+    monkeypatch.setattr("jaxbacklash.criticism.search.gain", lambda before, after: before.criterion - after.criterion)
+    rich = Model(frozenset({"stribeck"}), cost=100.0, free=("backlash", "Tc", "Ts"), tied=False)
+    plain = Model(frozenset({"coulomb_joint"}), cost=100.4, free=("backlash", "Tc"), tied=False)
+    search = Search(Bench())
+    search.bench.laws = {"stribeck": Law(states=(), absorbs=("coulomb_joint",)), "coulomb_joint": Law(states=(), absorbs=())}
+    monkeypatch.setattr(search, "simplified", lambda final, name, other: plain)
+    monkeypatch.setattr(search, "settle", lambda trial: trial)
+    steps = search.reduced([Step(rich, "stribeck", (), ())])
+    assert [(s.trial, s.added, s.dropped) for s in steps[1:]] == [(plain, "coulomb_joint", ("stribeck",))]
+    worse = replace(plain, cost=150.0)
+    monkeypatch.setattr(search, "simplified", lambda final, name, other: worse)
+    assert len(search.reduced([Step(rich, "stribeck", (), ())])) == 1

@@ -73,6 +73,10 @@ class QuickLook:
         """Share of what a model leaves that the likeliest shape of a law takes away, 0 to 1."""
         return float(np.max(self._worth(system, free, variants)) ** 2)
 
+    def evidence(self, system: System, free: tuple[str, ...], variants: list[AbstractEffect]) -> float:
+        """Fall of the sum of squares, in units of the rows' own variance, by the likeliest shape of a law: near 1 by chance."""
+        return self.share(system, free, variants) * (self._acceleration.size - ORDER)
+
     def _worth(self, system: System, free: tuple[str, ...], variants: list[AbstractEffect]) -> np.ndarray:
         """Correlation of each variant's torque with what the model leaves, none where physics forbids its sign."""
         if self.blind:

@@ -28,6 +28,8 @@ LITTLE, MUCH, MOST = 0.1, 0.25, 0.5
 internal states have not been tried; and if it is an effect of the measuring chain."""
 FAR, GLIMPSE = 2.0, 0.03
 """Where a model is this far off, a law with internal states must show this share in the quick look to be tried."""
+GLIMPSED = 2.0
+"""How many times what is demanded of an addition the quick look must show before such a law is tried beside what explains."""
 SURE = 4.0
 """A gain predicted to be so many times what is demanded is no accident, so a fit that does not show it has stuck."""
 STUCK = 1.01
@@ -123,12 +125,12 @@ class Search:
             self.bench.quieter(final.misfit)
             self.known.clear()
             return self.run()
-        if not explained(final):
+        if not explained(final) or self.glimpsed(self.trim(steps)[-1].trial):
             # What acts through a state of its own is tried before what explains a little here and there.
             steps = self.with_hidden(steps)
             if not explained(steps[-1].trial):
                 steps = self.forward(steps[-1].trial, steps, LITTLE)
-        steps, self.level = self.swap(self.trim(self.with_kin(steps)))
+        steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(steps))))
         return steps
 
     def trim(self, steps: list[Step]) -> list[Step]:
@@ -168,6 +170,17 @@ class Search:
                 return path
         return steps
 
+    def glimpsed(self, trial: Trial) -> bool:
+        """Whether the quick look sees a law with internal states that noise alone would hardly show.
+
+        The joint's own numbers can take in most of what a flexible link does, and leave too little to look unexplained.
+        """
+        return any(
+            self.bench.quick.evidence(trial.system, trial.free, law.guesses(trial.system)) > GLIMPSED * demanded(self.bench)
+            for name, law in self.bench.laws.items()
+            if law.states and not law.family and name not in trial.names
+        )
+
     def with_kin(self, steps: list[Step]) -> list[Step]:
         """Another path, where a near relative of a law with internal states explains with less beside it, or more."""
         final = steps[-1].trial
@@ -204,6 +217,17 @@ class Search:
                 if -lead < demanded(self.bench):
                     level[tuple(sorted(other.names))] = other
         return steps, level
+
+    def reduced(self, steps: list[Step]) -> list[Step]:
+        """The path with laws of its last model reduced to simpler ones that they contain, where those do as well."""
+        final = steps[-1].trial
+        for name in sorted(final.names):
+            for other in self.bench.laws[name].absorbs:
+                simpler = self.simplified(final, name, other)
+                if gain(simpler, final) < demanded(self.bench):
+                    settled, dropped = self.prune(self.settle(simpler))
+                    return self.reduced([*steps, Step(settled, other, (name, *dropped), ())])
+        return steps
 
     def only_measures(self, other: Trial, final: Trial) -> bool:
         """Whether what is new in a model is of the measuring chain alone."""
@@ -363,7 +387,8 @@ class Search:
         """Models with a law that has internal states beside those of ``start``, the likeliest of a family, until one explains."""
         found: list[Trial] = []
         for names in families(self.bench).values():
-            if start.names.isdisjoint(names):
+            # Friction's memory was looked for at every stage; here it is the last resort.
+            if start.names.isdisjoint(names) and not explained(start):
                 found += [self.placed(start, m, tied=False) for m in members(self.bench, start, names)[:1]]
         for name, law in self.bench.laws.items():
             if not law.states or law.family or name in start.names or any(t.misfit < NOISE_FLOOR for t in found):
