@@ -357,9 +357,11 @@ class Search:
     def best(self, current: Trial, tried: dict[str, Trial]) -> str:
         """The simplest of the candidates that do as well as any: fewest parameters, acting before measuring only."""
         # What leaves noise goes before what does not, however little is left.
-        tried = {n: t for n, t in tried.items() if explained(t)} or tried
+        enough = {n: t for n, t in tried.items() if explained(t)}
+        tried = enough or tried
         lowest = min(t.criterion for t in tried.values())
-        slack = max(1.0, (1.0 - AS_WELL) * (current.criterion - lowest))
+        # Among those the evidence decides; as long as more is missing, what will come changes it by shares of the whole.
+        slack = demanded(self.bench) if enough else max(1.0, (1.0 - AS_WELL) * (current.criterion - lowest))
         level = [n for n, t in tried.items() if t.criterion - lowest < slack]
         return min(level or tried, key=lambda n: (len(tried[n].free), measures_only(self.bench.laws[n]), tried[n].criterion))
 
