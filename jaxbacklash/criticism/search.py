@@ -72,7 +72,11 @@ class Search:
     def base(self) -> Trial:
         """The joint alone."""
         self.progress("fitting the joint alone", 0.1)
-        return self.settle(self._keep(self.bench.fit({}, patience=WHOLE)))
+        found = self.settle(self._keep(self.bench.fit({}, patience=WHOLE)))
+        if self.bench.outright and not adequate(found):
+            # A link that is not seen may be put anew at the start of every window; what it cannot do is jump between them.
+            found = self._keep(self.bench.fit({}, found, through=True))
+        return found
 
     def add(self, before: Trial, candidate: Candidate) -> Trial:
         """The model with one more effect, in place of simpler laws it contains, fitted as the model before was: tied or free."""
@@ -169,6 +173,10 @@ class Search:
             if path[-1].trial.tied and (not final.tied or path[-1].trial.criterion < final.criterion - demanded(self.bench)):
                 return path
         return steps
+
+    def runs_through(self, trial: Trial) -> bool:
+        """Whether a model of a link that is not seen was judged by one run through the record, as it has to stay."""
+        return bool(self.bench.outright) and (self.bench.grips(trial.names) or not adequate(trial))
 
     def glimpsed(self, trial: Trial) -> bool:
         """Whether the quick look sees a law with internal states that noise alone would hardly show.
@@ -273,7 +281,8 @@ class Search:
             ranking = tuple(rank(self.bench, current))
             tried = self.attempts(current, ranking)
             promised = {c.name for c in ranking if c.gain > SURE * demanded(self.bench)}
-            if current.tied and any(not t.tied or (t.cost > current.cost and n in promised) for n, t in tried.items()):
+            lost = any(not t.tied or (t.cost > current.cost and n in promised) for n, t in tried.items())
+            if lost and current.tied and not self.runs_through(current):
                 # A trajectory in one piece has stuck on the way to a clear gain: this stage is judged on free windows.
                 current = self.loosened(current)
                 tried = self.attempts(current, ranking)
@@ -292,6 +301,12 @@ class Search:
 
     def attempts(self, current: Trial, ranking: tuple[Candidate, ...]) -> dict[str, Trial]:
         """The likeliest candidates really refitted; few where the first already leaves nothing but noise."""
+        if self.bench.outright and not self.bench.grips(current.names):
+            # A link that floats says nothing of one that is held: friction at the ground is tried first, whatever its rank.
+            grips = [Candidate(n, self.bench.laws[n](), 0.0, current.misfit, {}) for n in self.bench.outright]
+            held = {c.name: self.add(current, c) for c in grips}
+            if any(gain(current, t) > demanded(self.bench) for t in held.values()):
+                return held
         scale = max(1.0, current.misfit**2) * current.correlation
         telling = [c for c in ranking if c.gain / scale > 0.5 * demanded(self.bench)][:TRIED]
         tried: dict[str, Trial] = {}
@@ -309,11 +324,6 @@ class Search:
             tried[c.name] = self.add(current, c)
             if not looked and not explained(tried[c.name]):
                 tried, looked = tried | self.memories(current, ranking), True
-        for name in self.bench.outright:
-            if name not in tried and not self.bench.grips(current.names):
-                # A link that floats says nothing of one that is held: friction at the ground is tried whatever its rank.
-                self.progress(f"trying {name}", 0.4)
-                tried[name] = self.add(current, Candidate(name, self.bench.laws[name](), 0.0, current.misfit, {}))
         return {name: trial for name, trial in tried.items() if math.isfinite(trial.criterion)}
 
     def finished(self, current: Trial, tried: dict[str, Trial]) -> dict[str, Trial]:

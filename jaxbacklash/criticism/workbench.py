@@ -133,7 +133,7 @@ class Workbench:
 
     def fit(
         self, effects: dict[str, AbstractEffect], start: Trial | None = None, *, joint: System | None = None,
-        tied: bool = False, patience: int = PATIENCE, followed: bool = False,
+        tied: bool = False, patience: int = PATIENCE, followed: bool = False, through: bool = False,
     ) -> Trial:  # fmt: skip
         """Fit the joint with these effects, from their values and from the windows of an earlier fit.
 
@@ -145,6 +145,7 @@ class Workbench:
         tied : fit one trajectory instead of free windows
         patience : linearisations allowed
         followed : take internal states that ``start`` does not have from the laws followed along the measured motion
+        through : run through the whole record from one start, as a link that friction holds always does
         """
         begin = joint if joint is not None else (self.base if start is None else start.system)
         grips = [name for name in effects if name in self.outright]
@@ -153,7 +154,7 @@ class Workbench:
             begin = self.gripped
             effects = {**effects, **{name: begin.effects[name] for name in grips}}
         problem, free = self.problem(effects, begin)
-        if held(problem.system):
+        if through or held(problem.system):
             self.fits += 1
             return self._run(problem, frozenset(effects), free, patience)
         unknowns = first_guess(problem)

@@ -18,7 +18,6 @@ from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import BSpline
-from scipy.signal import oaconvolve, savgol_filter
 
 ORDERS = 4  # of derivatives of the bump: the drive's third stands for a sensor that lags
 POWER = 6  # of the bump (1 - tau^2)^6
@@ -82,6 +81,8 @@ class WeakForm:
         tau = np.arange(-reach, reach + 1) / reach
         self._bumps = [(bump.deriv(k) if k else bump)(tau) / reach**k for k in range(ORDERS)]
         smooth = 2 * max(2, reach // 4) + 1
+        from scipy.signal import savgol_filter  # half a second to import
+
         self.velocity = savgol_filter(series, smooth, 2, deriv=1)
         self.drive_velocity = savgol_filter(drive, smooth, 2, deriv=1)
         low, high = np.quantile(series, [0.005, 0.995])
@@ -90,6 +91,8 @@ class WeakForm:
     def of(self, values: np.ndarray, order: int) -> np.ndarray:
         """The derivative of that order of ``values`` (N,), against each bump."""
         # A convolution turns the bump round, which is the sign of an odd derivative: both signs cancel.
+        from scipy.signal import oaconvolve  # half a second to import
+
         return oaconvolve(values, self._bumps[order], mode="valid")[:: self.stride]
 
     @cached_property
