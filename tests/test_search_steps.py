@@ -117,3 +117,18 @@ def test_a_law_is_reduced_to_the_simpler_one_that_does_as_well(monkeypatch):
     worse = replace(plain, cost=150.0)
     monkeypatch.setattr(search, "simplified", lambda final, name, other: worse)
     assert len(search.reduced([Step(rich, "stribeck", (), ())])) == 1
+
+
+def test_what_fell_behind_on_free_windows_is_not_tied(monkeypatch):
+    monkeypatch.setattr("jaxbacklash.criticism.search.gain", lambda before, after: before.criterion - after.criterion)
+    search = Search(Bench())
+    final = Model(frozenset({"gravity"}), cost=100.0)
+    rival = frozenset({"preload"})
+    assert not search.ruled_out(final, rival)
+    search.known[final.names, False] = Model(final.names, cost=90.0, tied=False)
+    search.known[rival, False] = Model(rival, cost=99.0, tied=False)
+    assert search.ruled_out(final, rival)
+    search.known[rival, False] = Model(rival, cost=99.0, tied=False, done=False)
+    assert not search.ruled_out(final, rival)
+    search.known[rival, False] = Model(rival, cost=90.5, tied=False)
+    assert not search.ruled_out(final, rival)

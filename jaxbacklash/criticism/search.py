@@ -257,7 +257,15 @@ class Search:
         near = [c for c in near if c.name not in self.bench.laws[name].absorbs]
         if name in [n for names in families(self.bench).values() for n in names]:
             near = [c for c, may in zip(near, may_replace(self.bench, final, name, [c.effect for c in near])) if may]
+        near = [c for c in near if not self.ruled_out(final, frozenset(kept) | {c.name})]
         return simpler + [self._keep(self.joined({**kept, c.name: c.effect}, final)) for c in near]
+
+    def ruled_out(self, final: Trial, names: frozenset[str]) -> bool:
+        """Whether a model fell behind another on free windows already: tying them gives it nothing that it lacks there."""
+        own, other = self.known.get((final.names, False)), self.known.get((names, False))
+        if own is None or other is None or not other.done:
+            return False
+        return gain(other, own) > demanded(self.bench)
 
     def simplified(self, final: Trial, name: str, other: str) -> Trial:
         """The model with a law reduced to a simpler one that it contains."""
