@@ -132,3 +132,18 @@ def test_what_fell_behind_on_free_windows_is_not_tied(monkeypatch):
     assert not search.ruled_out(final, rival)
     search.known[rival, False] = Model(rival, cost=90.5, tied=False)
     assert not search.ruled_out(final, rival)
+
+
+def test_a_law_with_states_waits_until_it_explains_or_nothing_else_helps(monkeypatch):
+    monkeypatch.setattr("jaxbacklash.criticism.search.gain", lambda before, after: before.criterion - after.criterion)
+    current = Model(frozenset(), cost=1000.0, misfit=30.0)
+    static = Model(frozenset({"gravity"}), cost=500.0, misfit=17.0)
+    soaking = Model(frozenset({"dahl"}), cost=100.0, misfit=7.0)
+    search = Search(Bench())
+    search.bench.laws["dahl"] = SimpleNamespace(states=("w",), absorbs=())
+    monkeypatch.setattr("jaxbacklash.criticism.search.measures_only", lambda law: False)
+    assert search.best(current, {"dahl": soaking, "gravity": static}, 0.25) == "gravity"
+    explains = replace(soaking, misfit=1.0)
+    assert search.best(current, {"dahl": explains, "gravity": static}, 0.25) == "dahl"
+    nibbling = replace(static, misfit=29.0)
+    assert search.best(current, {"dahl": soaking, "gravity": nibbling}, 0.25) == "dahl"

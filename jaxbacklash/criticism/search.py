@@ -299,7 +299,7 @@ class Search:
             steps[-1] = replace(steps[-1], ranking=ranking, evidence=evidence)
             if not tried:
                 break
-            name = self.best(current, tried)
+            name = self.best(current, tried, least)
             if evidence[name] < demanded(self.bench) or self.nibbles(current, tried[name], least):
                 break
             replaced = tuple(sorted(current.names - tried[name].names))
@@ -372,11 +372,17 @@ class Search:
                 return self.settle(free)
         return self.known[key]
 
-    def best(self, current: Trial, tried: dict[str, Trial]) -> str:
+    def best(self, current: Trial, tried: dict[str, Trial], least: float) -> str:
         """The simplest of the candidates that do as well as any: fewest parameters, acting before measuring only."""
         # What leaves noise goes before what does not, however little is left.
         enough = {n: t for n, t in tried.items() if explained(t)}
-        tried = enough or tried
+        # A law with internal states has one to choose in every free window and soaks up what others would explain.
+        plain = {n: t for n, t in tried.items() if not self.bench.laws[n].states}
+        clear = {
+            n: t for n, t in plain.items()
+            if gain(current, t) > demanded(self.bench) and not self.nibbles(current, t, least)
+        }  # fmt: skip
+        tried = enough or (plain if clear else tried)
         lowest = min(t.criterion for t in tried.values())
         # Among those the evidence decides; as long as more is missing, what will come changes it by shares of the whole.
         slack = demanded(self.bench) if enough else max(1.0, (1.0 - AS_WELL) * (current.criterion - lowest))
