@@ -135,7 +135,7 @@ def fit(
     windows, layout, group = prepare(system, chosen, window)
     clock["cut"] = time.perf_counter()
 
-    found = search(system, windows, names, starts=starts, seed=seed, progress=progress)
+    found = search(system, windows, names, starts=starts, seed=seed, rough=start is None, progress=progress)
     clock["search"] = time.perf_counter()
     progress("scoring predictions", 0.85)
     problem, unknowns = found.problem, found.unknowns

@@ -56,13 +56,17 @@ def search(
     *,
     starts: int,
     seed: int,
+    rough: bool = True,
     progress: Callable[[str, float], None] = silent,
 ) -> Found:
-    """Minimise the misfit over free windows from several starts, then tie the best one's windows into one trajectory."""
+    """Minimise the misfit over free windows from several starts, then tie the best one's windows into one trajectory.
+
+    ``rough`` says that the values to start from may be far off: then a stretch of the record is searched first.
+    """
     problem = make_problem(system, windows, free)
     if held(system):
         return _search_held(problem, free, starts=starts, seed=seed, progress=progress)
-    best, steps, agreeing, tried = _from_starts(problem, first_guess(problem), max(1, starts), seed, progress)
+    best, steps, agreeing, tried = _from_starts(problem, first_guess(problem), max(1, starts), seed, rough, progress)
     cost = float(best.stats["cost"])
     tied = False
     if np.sqrt(2.0 * cost / freedom(best.value, windows)) < ADEQUATE:
@@ -84,14 +88,15 @@ def search(
 
 
 def _from_starts(
-    problem: Problem, guess: Unknowns, starts: int, seed: int, progress: Callable[[str, float], None]
+    problem: Problem, guess: Unknowns, starts: int, seed: int, rough: bool, progress: Callable[[str, float], None]
 ) -> tuple[optx.Solution, int, int, int]:
     """Free windows from several starts: the best solution, the steps taken, and how many starts agree of how many tried.
 
     They are compared on a stretch of the record where it tells all parameters, and only the best goes on to the whole.
     """
     steps = 0
-    for part, begin in (stretch(problem, guess), (problem, guess)):
+    short = stretch(problem, guess) if rough or starts > 1 else (None, guess)
+    for part, begin in (short, (problem, guess)):
         if part is None:
             continue
         arrived = _arrive(part, begin, starts, seed, progress)
