@@ -79,7 +79,7 @@ def systems():
     yield pytest.param(plain.with_effects(*everything), force, id="all that is linear")
 
 
-@pytest.mark.parametrize(("system", "drive"), systems())
+@pytest.mark.parametrize(("system", "drive"), list(systems()))
 def test_exact_and_located_steps_agree(system, drive):
     """The located steps close in on the exact ones at the order of their own error."""
     plan, one = Plan(21, 0, 21), np.zeros(1)
