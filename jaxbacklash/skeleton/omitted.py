@@ -18,6 +18,9 @@ CERTAIN = 5.0
 """Standard errors from which a torque counts as seen. Twenty stretches and four shapes make chance ones reach 3."""
 MATTERS = 0.5
 """Standard errors of play, stiffness or damping by which it must move one of them to be told."""
+TAKES = 0.95
+"""Share of the sum of squares that it may leave at most: a column of chance takes one part in twenty, as there are stretches, and
+what explains less is an error of the method, however alike the stretches tell it."""
 RIVAL = 1.5
 """Torques that leave at most so many times the least misfit are named beside the best."""
 
@@ -59,6 +62,9 @@ def omitted(
     first = tried[best]
     moved = np.abs(first.step[:3]) / np.maximum(stderr[:3], 1e-300)
     worst = int(np.argmax(moved))
+    _, before, _ = linearised(terms, keep, found, inertia)
+    if first.left > TAKES * float(before @ before):
+        return None
     either_sign = best in ("gravity", "gap_spring")
     if abs(first.strength) < CERTAIN * first.stderr or moved[worst] < MATTERS or not (first.strength > 0.0 or either_sign):
         return None
