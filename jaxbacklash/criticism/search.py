@@ -221,7 +221,7 @@ class Search:
                 if lead > (demanded(self.bench) if self.only_measures(other, final) else 2.0) and adequate(other):
                     other = other if other.done else self.finish(other)
                     added = next(iter(other.names - final.names))
-                    return self.swap([*steps[:-1], Step(other, added, (), ())])
+                    return self.swap(self.reduced([*steps[:-1], Step(other, added, (), ())]))
                 if -lead < demanded(self.bench):
                     level[tuple(sorted(other.names))] = other
         return steps, level
@@ -244,11 +244,10 @@ class Search:
     def instead(self, steps: list[Step], name: str) -> list[Trial]:
         """Models with another effect in the place of one, from the windows of the model kept.
 
-        A law that does as well needs no other motion than that.
+        A law that does as well needs no other motion than that. Simpler laws that one contains were tried by `reduced`.
         """
         final = steps[-1].trial
         kept = {n: e for n, e in self.bench.effects(final).items() if n != name}
-        simpler = [self.simplified(final, name, other) for other in self.bench.laws[name].absorbs]
         ranking = next((s.ranking for s in steps if s.trial.names == frozenset(kept) and s.ranking), None)
         if ranking is None:
             ranking = tuple(rank(self.bench, self.bench.fit(kept, final, patience=10)))
@@ -258,7 +257,7 @@ class Search:
         if name in [n for names in families(self.bench).values() for n in names]:
             near = [c for c, may in zip(near, may_replace(self.bench, final, name, [c.effect for c in near])) if may]
         near = [c for c in near if not self.ruled_out(final, frozenset(kept) | {c.name})]
-        return simpler + [self._keep(self.joined({**kept, c.name: c.effect}, final)) for c in near]
+        return [self._keep(self.joined({**kept, c.name: c.effect}, final)) for c in near]
 
     def ruled_out(self, final: Trial, names: frozenset[str]) -> bool:
         """Whether a model fell behind another on free windows already: tying them gives it nothing that it lacks there."""

@@ -30,6 +30,8 @@ trajectory and a sharp one to make it one; the loose one alone."""
 NEAR = 0.1
 """How near to the minimum a search comes that is not the last, as `ArrowLevenbergMarquardt.atol`."""
 
+NOWHERE = "no start led to a finite misfit: the record may hold something else than this model's motion"
+
 
 def silent(stage: str, share: float) -> None:
     """Tell nobody how far the work is."""
@@ -112,7 +114,7 @@ def _from_starts(
             steps += int(best.stats["steps"])
         if np.isfinite(best.stats["cost"]):
             return best, steps, agreeing, len(arrived)
-    raise NoAnswer("no start led to a finite misfit: the record may hold something else than this model's motion")
+    raise NoAnswer(NOWHERE)
 
 
 def _arrive(
@@ -149,7 +151,7 @@ def _search_held(
         tried.append(search_held(problem, theta, limit=30 if not attempt else 15))
     tried = [entry for entry in tried if np.isfinite(entry[1]["cost"])]
     if not tried:
-        raise NoAnswer("no start led to a finite misfit: the record may hold something else than this model's motion")
+        raise NoAnswer(NOWHERE)
     unknowns, seen, steps = min(tried, key=lambda entry: float(entry[1]["cost"]))
     cost = float(seen["cost"])
     w = problem.windows

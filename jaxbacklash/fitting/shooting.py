@@ -220,8 +220,8 @@ def linearise(problem: Problem, unknowns: Unknowns) -> tuple[Blocks, Prediction]
     n, q, m = unknowns.starts.shape[0], unknowns.theta.shape[0], problem.windows.intervals
     starts = unknowns.starts.T
     following = jnp.concatenate([starts[1:], starts[:1]])
-    lead = Window(_lead(problem), starts, following, local_coefficients(unknowns.coefficients))
-    bare = eqx.tree_at(_lead, problem, replace=(None,) * len(_lead(problem)), is_leaf=lambda v: v is None)
+    lead = Window(per_window(problem), starts, following, local_coefficients(unknowns.coefficients))
+    bare = eqx.tree_at(per_window, problem, replace=(None,) * len(per_window(problem)), is_leaf=lambda v: v is None)
     met = by_chunks(_meet, (bare, unknowns.theta), lead, problem.windows.used)
     blocks = assemble(met.gram, met.slope, met.end_rows, met.tie, met.tie_weight, met.seen, n, m, q, jnp.sum(met.cost))
     return _ridge(problem, unknowns, blocks, n), met.predicted
@@ -251,14 +251,15 @@ class Met(eqx.Module):
     predicted: Prediction
 
 
-def _lead(problem: Problem) -> tuple[Array, ...]:
+def per_window(problem: Problem) -> tuple[Array, ...]:
+    """The arrays of a problem that have the windows on their leading axis, the unknowns apart."""
     w = problem.windows
     return w.t0, w.measured, w.weight, w.tie, w.input, w.input_weight, w.force
 
 
 def _meet(shared: tuple[Problem, Array], own: Window) -> Met:
     problem, theta = shared
-    problem = eqx.tree_at(_lead, problem, own.data, is_leaf=lambda v: v is None)
+    problem = eqx.tree_at(per_window, problem, own.data, is_leaf=lambda v: v is None)
     w = problem.windows
     n, q = own.start.shape[1], theta.shape[0]
     predicted, states, u, du = _predict(problem, theta, own.start.T, own.local)

@@ -6,7 +6,7 @@ import equinox as eqx
 import numpy as np
 import optimistix as optx
 
-from .shooting import Problem, Unknowns, _lead
+from .shooting import Problem, Unknowns, per_window
 
 STRETCH = 64
 """Windows of a stretch, the last of which holds no sample."""
@@ -40,12 +40,12 @@ def stretch(problem: Problem, guess: Unknowns) -> tuple[Problem | None, Unknowns
         return taken
 
     # The last window only holds the spline coefficients that the one before it shares with it.
-    t0, measured, weight, tie, input, input_weight, force = _lead(problem)
+    t0, measured, weight, tie, input, input_weight, force = per_window(problem)
     lead = (
         own(t0), own(measured), own(weight, STRETCH - 1), own(tie, STRETCH - 2), own(input),
         own(input_weight, STRETCH - 1), own(force),
     )  # fmt: skip
-    part = eqx.tree_at(_lead, problem, lead)
+    part = eqx.tree_at(per_window, problem, lead)
     part = eqx.tree_at(
         lambda p: (p.windows.coefficients, p.windows.used),
         part,
