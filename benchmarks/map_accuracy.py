@@ -183,9 +183,7 @@ def main() -> None:
     rest = np.zeros((2, cells))
 
     import jaxbacklash as jb
-    from jaxbacklash import program
 
-    program.prepare_for_maps()
     jb.start()
     found, referee = by_ours(inverse_alpha, periods, skip, rest), by_taylor(inverse_alpha, periods, skip, rest)
     unlike = compare(f"ours and Taylor series, {periods} periods, {skip} skipped", found, referee)

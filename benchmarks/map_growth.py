@@ -36,7 +36,6 @@ def one(rows: int, columns: int, periods: int, folder: str) -> None:
     import jaxbacklash as jb
     from jaxbacklash import program
 
-    program.prepare_for_maps()
     jb.start()
     from jaxbacklash.dynamics.family import PaperCase
     from jaxbacklash.dynamics.follow import compile_exact

@@ -29,7 +29,6 @@ import numpy as np
 
 import jaxbacklash as jb
 from benchmarks.peers import map_peers
-from jaxbacklash import program
 from jaxbacklash.dynamics.family import PaperCase
 from jaxbacklash.dynamics.follow import BLOCK, follow
 from jaxbacklash.dynamics.maps import request, run_map
@@ -144,7 +143,6 @@ def main() -> None:
     parser.add_argument("--peak", type=float, default=16.0, help="peak of a core in operations a cycle (Zen 4: 16)")
     parser.add_argument("--ghz", type=float, default=3.7, help="clock of a core under this load")
     given = parser.parse_args()
-    program.prepare_for_maps()
     jb.start(cache=False)
     shape, periods, skip = ((16, 8), 40, 20) if given.tiny else ((256, 64), 400, 100)
     axes = {"inverse_alpha": np.linspace(1.0, 5.0, shape[0]), "zeta": np.linspace(0.005, 0.03, shape[1])}

@@ -23,15 +23,14 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import jaxbacklash as jb
-from jaxbacklash import dynamics, program
+from jaxbacklash import dynamics
 from jaxbacklash.excitation import Chirp, Harmonic
 from jaxbacklash.report import figures_maps as figures
 
 # %% [markdown]
-# Maps gain from telling the compiler about them before the first computation. Everything needs double precision.
+# `start` switches to double precision, which everything needs, and tells the compiler what maps and fits gain from.
 
 # %%
-program.prepare_for_maps()
 jb.start()
 tiny = bool(os.environ.get("JAXBACKLASH_TINY"))
 

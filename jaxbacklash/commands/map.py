@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .. import __version__, program
+from .. import __version__
 from ..dynamics.family import CASES, PaperCase
 from ..dynamics.follow import compile_exact
 from ..dynamics.labels import need_xarray, write_netcdf
@@ -30,7 +30,6 @@ def run(
     start: str, out: Path, as_json: bool,
 ) -> None:  # fmt: skip
     """Check, compute tile by tile beside the output, write the map, draw it, and tell."""
-    program.prepare_for_maps()
     begun = time.perf_counter()
     if case not in CASES:
         raise BadInput(f"--case {case}: wanted 1 or 2")
