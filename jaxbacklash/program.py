@@ -20,14 +20,19 @@ FLAGS = {
     # A program that is suspended for a while is not stuck.
     "xla_cpu_collective_call_warn_stuck_timeout_seconds": 100_000,
     "xla_cpu_collective_call_terminate_timeout_seconds": 100_000,
-    # Of a CPU's compiler alone; other devices ignore them. Together they also spare a fit an eighth of its time.
-    "xla_backend_extra_options": ",".join(
-        (
-            "xla_cpu_use_multi_output_fusion",  # what several arrays share is computed once: a factor of three in a map
-            "xla_cpu_small_while_loop_byte_threshold=4194304",  # a loop over a block is one function: a third of a map's time
-            "xla_cpu_disable_loop_unrolling",  # no faster without, and compiled in two thirds of the time
-        )
-    ),
+}
+# Of a CPU's compiler alone; other devices ignore them.
+LOOPS = (
+    "xla_cpu_small_while_loop_byte_threshold=4194304",  # a loop over a block is one function: a third of a map's time
+    "xla_cpu_disable_loop_unrolling",  # no faster without, and compiled in two thirds of the time
+)
+LASTING = {
+    # What several arrays share is computed once: a factor of three in a map, an eighth in a fit.
+    "xla_backend_extra_options": ",".join((*LOOPS, "xla_cpu_use_multi_output_fusion")),
+}
+BRIEF = {
+    "xla_backend_extra_options": ",".join(LOOPS),
+    "xla_cpu_use_fusion_emitters": "false",  # compiled in two thirds of the time, a tenth slower ever after
 }
 
 
@@ -44,19 +49,21 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def start(*, cache: bool = True, devices: int | None = None) -> None:
+def start(*, cache: bool = True, devices: int | None = None, brief: bool = False) -> None:
     """Switch to double precision, ask for wide vectors and one device a core, and keep compiled programs for the next run.
 
     Parameters
     ----------
     cache : keep compiled programs in `cache_folder`
     devices : CPU devices that share a fit's windows; default one a core, at most `MOST_CORES`
+    brief : the program computes little and ends, like most commands: compile faster, even if what is compiled is slower
     """
     import jax
 
     # XLA reads its flags when the first computation starts.
     flags = os.environ.get("XLA_FLAGS", "")
-    ours = [f"--{name}={value}" for name, value in FLAGS.items() if name not in flags]
+    wanted = FLAGS | (BRIEF if brief else LASTING)
+    ours = [f"--{name}={value}" for name, value in wanted.items() if name not in flags]
     os.environ["XLA_FLAGS"] = " ".join([flags, *ours]).strip()
     enable_double_precision()
     with contextlib.suppress(RuntimeError):  # the program has computed already: it goes on with what it has

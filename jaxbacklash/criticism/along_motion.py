@@ -64,13 +64,18 @@ def torques(system: System, seeds: np.ndarray, m: Motion) -> tuple[np.ndarray, n
     return np.asarray(torque), np.asarray(columns)
 
 
-def own_torque(effect: AbstractEffect, system: System, m: Motion) -> np.ndarray:
-    """Torque of one effect of a system like this one along a motion (N,)."""
-    return np.asarray(_own_torque(effect, _joint(system), m.rows, m.substeps))
+def own_torques(shapes: list[AbstractEffect], system: System, m: Motion) -> np.ndarray:
+    """Torque of one law at each of its shapes (K, N), in a system like this one along a motion."""
+    joint = _joint(system)
+    if shapes[0].states and len({jax.tree.structure(s) for s in shapes}) == 1:
+        # States are followed sample by sample, which takes no longer for several shapes than for one.
+        vectors = np.stack([ravel(s) for s in shapes])
+        return np.asarray(_own_torques(shapes[0], vectors, joint, m.rows, m.substeps))
+    return np.stack([np.asarray(_own_torque(s, joint, m.rows, m.substeps)) for s in shapes])
 
 
 def own_tangents(effect: AbstractEffect, system: System, seeds: np.ndarray, m: Motion) -> tuple[np.ndarray, np.ndarray]:
-    """`own_torque` and its derivatives (q, N) along ``seeds`` (q, p) of the effect's parameters, its states following."""
+    """Torque of one law and its derivatives (q, N) along ``seeds`` (q, p) of the effect's parameters, its states following."""
     joint, vector = _joint(system), jnp.asarray(ravel(effect))
     torque, columns = _own_tangents(effect, vector, jnp.asarray(seeds), joint, m.rows, m.substeps)
     return np.asarray(torque), np.asarray(columns)
@@ -123,6 +128,11 @@ _own_torque = kept_jit(_alone)
 
 
 @kept_jit
+def _own_torques(effect: AbstractEffect, vectors: Any, joint: System, rows: Any, substeps: int) -> Any:
+    return jax.vmap(lambda vector: _alone(unravel(effect, vector), joint, rows, substeps))(vectors)
+
+
+@kept_jit
 def _own_tangents(effect: AbstractEffect, vector: Any, seeds: Any, joint: System, rows: Any, substeps: int) -> tuple[Any, Any]:
     def along(vector: Any) -> Any:
         return _alone(unravel(effect, vector), joint, rows, substeps)
@@ -157,9 +167,10 @@ def _states(effect: AbstractEffect, joint: System, rows: Any, substeps: int) -> 
 
         for k in range(substeps):
             own = part(float(k), own)
-        return own, own
+        # One array, as the compiler may copy several of them whole at every sample.
+        return own, jnp.stack(own)
 
     begin = effect.start(instant(tuple(v[0] for v in rows)))
     begin = tuple(jnp.asarray(s, dtype=rows[1].dtype) for s in begin)
     _, path = jax.lax.scan(step, begin, (tuple(v[:-1] for v in rows), tuple(v[1:] for v in rows)))
-    return tuple(jnp.concatenate([b[None], p]) for b, p in zip(begin, path))
+    return tuple(jnp.concatenate([b[None], path[:, i]]) for i, b in enumerate(begin))

@@ -17,7 +17,7 @@ from ..parameters import ravel, specs
 from ..records import Record
 from ..signals import Bump
 from ..system import System
-from .along_motion import motion, own_torque, torques
+from .along_motion import motion, own_torques, torques
 
 ORDER = 8
 """Order of the autoregression that whitens the rows."""
@@ -51,7 +51,7 @@ class QuickLook:
 
     def column(self, effect: AbstractEffect, system: System) -> np.ndarray:
         """Torque of an effect on the measured motion, under the bump (R,)."""
-        return self.average(own_torque(effect, system, self.motion))
+        return self.average(own_torques([effect], system, self.motion)[0])
 
     def choose(
         self, system: System, free: tuple[str, ...], variants: list[AbstractEffect], keep: int = 1
@@ -84,7 +84,7 @@ class QuickLook:
         left, by = self.missing(system, free)
         name, told = canonical_name(variants[0]), np.stack([ravel(v) for v in variants])
         if name not in self._columns or not np.array_equal(self._columns[name][0], told):
-            self._columns[name] = told, np.stack([self.column(v, system) for v in variants], axis=1)
+            self._columns[name] = told, self.average(own_torques(variants, system, self.motion)).T
         columns = self._columns[name][1]
         white = whitener(left - by @ np.linalg.lstsq(by, left, rcond=None)[0])
         left, by, columns = white(left), white(by), white(columns)

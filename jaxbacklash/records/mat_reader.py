@@ -4,7 +4,6 @@ from collections.abc import Collection
 from pathlib import Path
 
 import numpy as np
-from scipy import io
 
 from jaxbacklash.errors import BadInput
 
@@ -52,6 +51,8 @@ def read_mat(path: Path, wanted: Collection[str]) -> dict[str, np.ndarray]:
 def _read_v5(path: Path) -> tuple[dict[str, np.ndarray], dict[str, dict[str, np.ndarray]]]:
     """Arrays by name, and the fields of each struct by the struct's name."""
     plain, structs = {}, {}
+    from scipy import io  # a tenth of a second to import, and few records need it
+
     for name, values in io.loadmat(path).items():
         if name.startswith("__") or not isinstance(values, np.ndarray):
             continue

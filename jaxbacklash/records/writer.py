@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
-from scipy import io
 
 from .checks import listed, wrong
 from .record import Record
@@ -78,6 +77,8 @@ def _write_npz(file: BinaryIO, columns: dict[str, np.ndarray]) -> None:
 
 
 def _write_mat(file: BinaryIO, columns: dict[str, np.ndarray]) -> None:
+    from scipy import io  # a tenth of a second to import, and few records need it
+
     io.savemat(file, columns, oned_as="column", do_compression=True)
 
 
