@@ -134,7 +134,7 @@ def _tiles(stages: Sequence[Entry]) -> list[dict[str, str]]:
     if not stages:
         return []
     tiles = []
-    for name in BASE:
+    for name in (*BASE, "inertia"):  # the inertia only where it was fitted
         entry = parameters_of(stages[-1]).get(name)
         if entry is None:
             continue
@@ -142,7 +142,8 @@ def _tiles(stages: Sequence[Entry]) -> list[dict[str, str]]:
         # Degrees are what a person pictures, so they come first where there are any; radians stay beside them.
         (number, unit), *others = shown[::-1] or [("not determined", "")]
         rest = " ".join(others[0]) if others else str(entry.get("why") or "")
-        tiles.append({"label": LABELS[name], "value": number, "unit": unit, "rest": rest})
+        label = LABELS.get(name) or str(entry.get("label") or name)
+        tiles.append({"label": label, "value": number, "unit": unit, "rest": rest})
     last = stages[-1]
     if is_number(last.get("rms_over_noise")):
         held = last.get("heldout_rms_over_noise")
