@@ -289,8 +289,10 @@ def test_drive_period():
 K, C, HALF_PLAY, DT = 3600.0, 6.0, 0.012, 0.002  # 9.5 Hz in contact
 
 
-def swept(size, seconds=16.0, noise=3e-5, seed=0):
+def swept(size, seconds=16.0, noise=3e-5, seed=0, wear=0.0):
     """A joint with play under a swept base motion: measured x and z, and the exponent of its exact tangent [1/s].
+
+    The play grows by a share ``wear`` of its middle value over the record.
 
     Runge-Kutta steps of DT / 8, the tangent beside the motion by the slope of the law.
     """
@@ -300,15 +302,15 @@ def swept(size, seconds=16.0, noise=3e-5, seed=0):
     phase = 2.0 * np.pi * (1.5 * t + 0.5 * 0.1 * t**2)
     x, dx = size * np.sin(phase), size * np.cos(phase) * 2.0 * np.pi * (1.5 + 0.1 * t)
     y, v, a, b, grown = 0.005, 0.0, 1.0, 0.0, 0.0
-    z = np.empty(t.size)
+    z, half = np.empty(t.size), HALF_PLAY * (1.0 + wear * (t / seconds - 0.5))
 
     def pull(y, v, k):
         apart = y - x[k]
-        return -K * (apart - min(max(apart, -HALF_PLAY), HALF_PLAY)) - C * (v - dx[k])
+        return -K * (apart - min(max(apart, -half[k]), half[k])) - C * (v - dx[k])
 
     for k in range(t.size):
         z[k] = y - x[k]
-        inside = abs(z[k]) < HALF_PLAY
+        inside = abs(z[k]) < half[k]
         f = pull(y, v, k)
         middle_v, middle_y = v + 0.5 * h * f, y + 0.5 * h * v
         f2 = pull(middle_y, middle_v, k)
@@ -335,6 +337,20 @@ def test_exponent_under_a_sweep_is_that_of_the_tangent(parting):
     assert abs(found.value / DT - exact) < 3.0 * found.stderr / DT
     assert (found.value + found.second) / DT == pytest.approx(-C, rel=0.05)
     assert found.word == "separate"
+
+
+def test_a_play_that_wears_is_seen_and_followed():
+    x, z, exact = swept(0.055, wear=0.3)
+    found = driven_exponent(z, x, mean_period(z), rng())
+    assert found.drift == pytest.approx(0.3, abs=0.05)
+    assert exact > 0.7
+    assert found.value / DT == pytest.approx(exact, rel=0.25)
+    assert "its lengths, the play among them, change by +3" in str(chaos(z, DT, drive=x, drive_name="base motion", clean=False))
+
+
+def test_a_play_that_stays_is_not_called_drifting(parting):
+    x, z, _ = parting
+    assert driven_exponent(z, x, mean_period(z), rng()).drift == 0.0
 
 
 def test_a_law_with_play_is_found_flat_between_kinks(parting):

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..records import MeasuredSeries
 from ..timeseries import ChaosReport
+from ..timeseries.print_report import drift_words
 from .result import SCHEMA, finite
 
 
@@ -65,6 +66,8 @@ def choices(found: ChaosReport) -> list[tuple[str, str]]:
     if found.driven is not None and found.driven.value is not None:
         cells = ", ".join(str(one) for one, _, _ in found.driven.used)
         rows.append(("law of motion", f"tables of {cells} cells, those that predict best the stretches they were not fitted to"))
+        if found.driven.drift:
+            rows.append(("the law drifts", f"{drift_words(found.driven.drift)}: so it predicts clearly better"))
     if found.cleaned is not None:
         used = "the exponent is from the cleaned series" if found.uses_cleaned else "the exponent is from the series as measured"
         used = "the exponent is not from it" if found.conditional else used
@@ -143,7 +146,7 @@ def _driven(found: ChaosReport) -> dict[str, Any]:
     return {
         "value": one.value / found.dt, "ci95": [end / found.dt for end in one.interval], "unit": "1/s",
         "second": one.second / found.dt, "two_motions": one.word, "prediction_error": finite(one.error),
-        "samples": one.samples, "first_sample": one.first,
+        "samples": one.samples, "first_sample": one.first, "drift": one.drift,
         "laws": [
             {"cells": cells, "friction": friction, "prediction_error": finite(error), "value": value / found.dt}
             for (cells, friction, error), value in zip(one.used, one.values)

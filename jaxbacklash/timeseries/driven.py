@@ -12,13 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from .force_surface import PARTS, Law, Surface, WeakForm, laws
+from .force_surface import PARTS, Law, Surface, WeakForm, find_drift, laws, length_at
 
 SHORTEST = 2000  # samples
 LONGEST = 60000  # of a longer record the middle is used
 REACH = 0.3  # half-width of the bumps, of a swing
 PREDICTS = 0.2  # rms error of the acceleration above which the drive and the state do not tell the motion
 AS_GOOD = 1.25  # laws whose error is within this factor of the best also count
+TABLE = 34  # cells of the table by which a drift is found
 RESAMPLES = 12
 SUBSTEPS = 4
 GROUP = 8  # samples between two orthogonalisations
@@ -33,7 +34,8 @@ class Driven:
     ``value`` largest exponent with ``stderr`` and 95 % ``interval`` (of the growth over this very record: errors of the law, not
     of another record), ``second`` the other exponent; None, with ``why``, where there is none. ``rates`` (G,) growth in groups
     of `GROUP` samples; ``samples`` used, from ``first`` on; ``middle`` and ``deviation`` of the motion, in units of which
-    ``surface``, the best law, is; ``error`` its out-of-sample error; ``used`` laws (cells, friction, error), ``values`` of each.
+    ``surface``, the best law, is; ``error`` its out-of-sample error; ``used`` laws (cells, friction, error), ``values`` of each;
+    ``drift`` the share by which the lengths of the law grow over the record.
     """
 
     value: float | None
@@ -50,6 +52,7 @@ class Driven:
     error: float | None
     used: tuple[tuple[int, str, float], ...]
     values: tuple[float, ...]
+    drift: float = 0.0
 
     @property
     def word(self) -> str:
@@ -67,9 +70,10 @@ class Driven:
 def driven_exponent(series: np.ndarray, drive: np.ndarray, period: float, rng: np.random.Generator) -> Driven:
     """The exponent conditional on the drive.
 
-    Tables of every size in `force_surface.CELLS`, with and without friction, are fitted; those whose out-of-sample error is
-    within 25 % of the best count, weighted by its inverse square, and their scatter is the error of the choice. Stretches of the
-    record drawn anew give the error of the fit.
+    Lengths of the law may grow steadily over the record, as a wearing play does, where that predicts clearly better. Tables
+    of every size in `force_surface.CELLS`, with and without friction, are fitted; those whose out-of-sample error is within 25 %
+    of the best count, weighted by its inverse square, and their scatter is the error of the choice. Stretches of the record
+    drawn anew give the error of the fit.
 
     Parameters
     ----------
@@ -87,7 +91,8 @@ def driven_exponent(series: np.ndarray, drive: np.ndarray, period: float, rng: n
         return _none(f"the drive is measured, but {n} samples are too few for the law of motion", first, n)
     if not np.any(drive):
         return _none("the drive does not move", first, n)
-    weak = WeakForm(series, drive, reach)
+    most = n // max(1, reach // 4) // 20  # cells, at some twenty bumps each
+    weak = WeakForm(series, drive, reach, find_drift(series, drive, reach, min(TABLE, most)))
     tried = laws(weak, weak.acceleration.size // 20)
     best = tried[0]
     if best.error > PREDICTS:
@@ -110,6 +115,7 @@ def driven_exponent(series: np.ndarray, drive: np.ndarray, period: float, rng: n
         value, stderr, (value - NORMAL_95 * stderr, value + NORMAL_95 * stderr), float(weights @ exponents[: len(used), 1]),
         None, np.tensordot(weights, rates[: len(used), :, 0], 1), first, n, middle, deviation, surfaces[0], best.error,
         tuple((one.edges.size - 1, one.against, one.error) for one in used), tuple(float(v) for v in own),
+        weak.drift,
     )  # fmt: skip
 
 
@@ -130,10 +136,10 @@ def _growth(weak: WeakForm, surfaces: list[Surface]) -> np.ndarray:
     at = at[at < n - 1]
     at = at[: at.size // (GROUP * SUBSTEPS) * GROUP * SUBSTEPS]
     s, v = (CubicSpline(np.arange(n), one)(at) for one in (weak.series, weak.velocity))
-    u = np.interp(at, np.arange(n), weak.drive_velocity)
+    u, scale = np.interp(at, np.arange(n), weak.drive_velocity), length_at(at, n, weak.drift)
     steps = []
     for one in surfaces:
-        maps = _step(*one.slopes(s, v, v - one.input[2] * u), 1.0 / SUBSTEPS, weight).reshape(-1, GROUP * SUBSTEPS, 2, 2)
+        maps = _step(*one.slopes(s, v, v - one.input[2] * u, scale), 1.0 / SUBSTEPS, weight).reshape(-1, GROUP * SUBSTEPS, 2, 2)
         while maps.shape[1] > 1:
             maps = maps[:, 1::2] @ maps[:, 0::2]
         steps.append(maps[:, 0])

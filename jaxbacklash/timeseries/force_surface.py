@@ -18,6 +18,7 @@ from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import BSpline
+from scipy.optimize import minimize_scalar
 
 ORDERS = 4  # of derivatives of the bump: the drive's third stands for a sensor that lags
 POWER = 6  # of the bump (1 - tau^2)^6
@@ -30,6 +31,8 @@ FOLDS = 4
 MOVES = 3  # of the edges towards the kinks, while that predicts better
 EVEN = 0.5
 RIDGE = 1e-6  # on second differences of f: fills cells that the motion never visits
+DRIFTS = (-0.9, -0.6, -0.4, -0.25, -0.12, 0.0, 0.12, 0.25, 0.4, 0.6, 0.9)
+CLEARLY = 0.9  # a drift is believed that lowers the out-of-sample error by a tenth or more
 FRICTIONS = ("none", "relative", "ground")
 
 
@@ -49,10 +52,10 @@ class Surface:
     input: np.ndarray
     error: float
 
-    def slopes(self, s: np.ndarray, v: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def slopes(self, s: np.ndarray, v: np.ndarray, w: np.ndarray, scale: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives of the acceleration by s and by its velocity, at states (N,) with velocities ``w`` (N,) against the
-        ground."""
-        by_s = _slope(self.edges, self.force, s) - v * _slope(self.damping_edges, self.damping, s)
+        ground, where lengths of the table f have grown to ``scale`` (N,)."""
+        by_s = _slope(self.edges, self.force, s / scale) - v * _slope(self.damping_edges, self.damping, s)
         by_v = -np.interp(s, self.damping_edges, self.damping)
         if self.friction_edges is not None and self.friction is not None:
             by_v = by_v + _slope(self.friction_edges, self.friction, v if self.against == "relative" else w)
@@ -72,10 +75,12 @@ class WeakForm:
     ----------
     series, drive : (N,) with standard deviation 1
     reach : half-width of the bumps [samples]
+    drift : by which share all lengths of the table f grow from the record's beginning to its end, as a wearing play does
     """
 
-    def __init__(self, series: np.ndarray, drive: np.ndarray, reach: int) -> None:
-        self.series, self.drive, self.reach = series, drive, reach
+    def __init__(self, series: np.ndarray, drive: np.ndarray, reach: int, drift: float = 0.0) -> None:
+        self.series, self.drive, self.reach, self.drift = series, drive, reach, drift
+        self.scale = length_at(np.arange(series.size), series.size, drift)
         self.stride = max(1, reach // 4)
         bump = np.polynomial.Polynomial([1.0, 0.0, -1.0]) ** POWER
         tau = np.arange(-reach, reach + 1) / reach
@@ -85,8 +90,7 @@ class WeakForm:
 
         self.velocity = savgol_filter(series, smooth, 2, deriv=1)
         self.drive_velocity = savgol_filter(drive, smooth, 2, deriv=1)
-        low, high = np.quantile(series, [0.005, 0.995])
-        self.range = float(low), float(high)
+        self.range = _inner(series / self.scale)
 
     def of(self, values: np.ndarray, order: int) -> np.ndarray:
         """The derivative of that order of ``values`` (N,), against each bump."""
@@ -107,12 +111,14 @@ class WeakForm:
 
     def table(self, edges: np.ndarray) -> np.ndarray:
         """(R, K) the hats of a table of the series, one column an edge."""
-        return np.stack([self.of(_hat(edges, k, self.series), 0) for k in range(edges.size)], axis=1)
+        at = self.series / self.scale
+        # A force that grows with its lengths keeps its stiffness.
+        return np.stack([self.of(self.scale * _hat(edges, k, at), 0) for k in range(edges.size)], axis=1)
 
     @cached_property
     def damping(self) -> tuple[np.ndarray, np.ndarray]:
         """Edges, and (R, D) minus hats of the series times its velocity: rates of the hats' integrals."""
-        edges = np.linspace(*self.range, DAMPING_CELLS + 1)
+        edges = np.linspace(*_inner(self.series), DAMPING_CELLS + 1)
         # Splines carry their integral along; beyond the edges both end hats go on as they are.
         wide = np.concatenate([[self.series.min() - 1.0], edges, [self.series.max() + 1.0]])
         columns = []
@@ -129,6 +135,16 @@ class WeakForm:
         half = np.geomspace(FINEST, 1.0, FRICTION_CELLS) * np.quantile(np.abs(speed), 0.995)
         edges = np.concatenate([-half[::-1], half])
         return edges, np.stack([self.of(_hat(edges, k, speed), 0) for k in range(1, edges.size - 1)], axis=1)
+
+
+def _inner(values: np.ndarray) -> tuple[float, float]:
+    low, high = np.quantile(values, [0.005, 0.995])
+    return float(low), float(high)
+
+
+def length_at(at: np.ndarray, samples: int, drift: float) -> np.ndarray:
+    """Length at samples ``at`` of what grows steadily by a share ``drift`` over the record and is 1 in its middle."""
+    return 1.0 + drift * (at / samples - 0.5)
 
 
 def _hat(edges: np.ndarray, k: int, at: np.ndarray) -> np.ndarray:
@@ -191,6 +207,22 @@ class Law:
         return Surface(
             self.edges, force, self.damping_edges, damping, self.against, self.friction_edges, friction, inputs, self.error
         )
+
+
+def find_drift(series: np.ndarray, drive: np.ndarray, reach: int, cells: int) -> float:
+    """By which share the lengths of the law of motion grow over the record; 0 unless that predicts clearly better."""
+
+    def error(drift: float) -> float:
+        weak = WeakForm(series, drive, reach, drift)
+        edges = np.linspace(*weak.range, cells + 1)
+        return Law(weak, (edges, weak.table(edges)), "none", 0.0).error
+
+    errors = [error(drift) for drift in DRIFTS]
+    best = int(np.argmin(errors))
+    if best in (0, len(DRIFTS) - 1) or errors[best] > CLEARLY * error(0.0):
+        return 0.0
+    near = (DRIFTS[best - 1], DRIFTS[best + 1])
+    return float(minimize_scalar(error, bounds=near, method="bounded", options={"xatol": 0.005}).x)
 
 
 def laws(weak: WeakForm, most: int) -> list[Law]:

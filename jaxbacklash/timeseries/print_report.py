@@ -79,7 +79,13 @@ def _driven(found: ChaosReport) -> list[str]:
         "  how                             tangent of the measured law along the record" if found.conditional else told,
         f"  its second exponent             {one.second / found.dt:.4g} 1/s; together they are the rate at which volumes shrink",
         f"  law of motion                   tables of {cells} cells; acceleration missed by {100 * one.error:.2g} %",
+        *([f"  the law drifts                  {drift_words(one.drift)}"] if one.drift else []),
     ]
+
+
+def drift_words(drift: float) -> str:
+    """What a drift of the law's lengths says of a joint."""
+    return f"its lengths, the play among them, change by {100 * drift:+.2g} % from the record's beginning to its end"
 
 
 def _or_none(value: int | None) -> str:
