@@ -40,6 +40,7 @@ def text(found: ChaosReport) -> str:
     if found.cleaned is not None and found.cleaned_dimension is not None:
         gain = "unknown" if found.cleaned.gain_db is None else f"{found.cleaned.gain_db:.1f} dB"
         use = "used for the exponent" if found.uses_cleaned else "not used: it would gain too little"
+        use = "the exponent is not from it" if found.conditional else use
         lines += [
             f"  after noise reduction           {_or_none(found.cleaned_dimension.cao)} by Cao's E1, "
             f"{_or_none(found.cleaned_dimension.false_neighbours)} by false neighbours",
