@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import jaxbacklash as jb
-from jaxbacklash.criticism import missing_torque_of
+from jaxbacklash.criticism import missing_torque_of, smoother
 from jaxbacklash.criticism.chain import factorise, solve_chain, variances
 from jaxbacklash.criticism.tables import smoothness
 from jaxbacklash.effects.learned import basis, hats
@@ -139,3 +139,15 @@ def test_best_coordinates(name, kind, wanted):
     surface = jb.explain_torque(jb.missing_torque(jb.fit(record, inertia=rig.inertia, starts=1)))
     assert surface.coordinates in wanted
     assert surface.share > 0.7
+
+
+def test_a_parameter_that_the_record_does_not_tell_spoils_no_factor():
+    mix = np.random.default_rng(4).standard_normal((4, 4))
+    told = mix @ mix.T
+    alone = np.concatenate([np.diagonal(told), [0.0, 2.0]])
+    information = np.zeros((6, 6))
+    information[:4, :4] = told
+    information[5, 5] = -1e-15  # all of it is lost to the others, but for rounding
+    factor = np.asarray(smoother._factored(information, alone))
+    assert np.all(np.isfinite(factor))
+    np.testing.assert_allclose(factor @ factor.T, information, atol=1e-11)

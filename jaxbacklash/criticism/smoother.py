@@ -37,6 +37,8 @@ from .chain import Factor, factorise, solve_chain, variances
 Array = Any
 RIDGE = 1e-10
 """Precision of every torque value by itself, in its unit: holds what no row touches."""
+ROUNDING = 1e-13
+"""Least share of a parameter's information that may be left when all else is unknown: less is rounding."""
 LEEWAY = 0.5
 """How far a parameter may move while the torque is sought: standard deviation of its prior, in units of its value."""
 NOTHING = 1e8
@@ -168,13 +170,23 @@ def solve(linear: Blocks, diagonal: Array, below: Array, slope: Array) -> Solved
     pull = linear.slope + slope
     both = solve_chain(factor, jnp.concatenate([linear.border, pull[:, :, None]], axis=2))
     reach, alone = both[:, :, :-1], both[:, :, -1]
-    schur = jnp.linalg.cholesky(linear.corner - jnp.einsum("wbi,wbj->ij", linear.border, reach))
+    schur = _factored(linear.corner - jnp.einsum("wbi,wbj->ij", linear.border, reach), jnp.diagonal(linear.corner))
     right = linear.slope_theta - jnp.einsum("wbi,wb->i", linear.border, alone)
     theta = -jsl.cho_solve((schur, True), right)
     local = -alone - reach @ theta
     promise = -0.5 * (jnp.sum(pull * local) + jnp.sum(linear.slope_theta * theta))
     log_determinant = factor.log_determinant + 2.0 * jnp.sum(jnp.log(jnp.diagonal(schur)))
     return Solved(factor, reach, schur, local, theta, promise, log_determinant)
+
+
+def _factored(information: Array, alone: Array) -> Array:
+    """Cholesky factor of the information about the parameters (q, q); each has ``alone`` (q,) of it where all else is known.
+
+    What the record does not tell, like the shape of a law of no strength, has none left, or less by rounding.
+    """
+    size = jnp.sqrt(jnp.where(alone > 0.0, alone, 1.0))
+    values, vectors = jnp.linalg.eigh(information / jnp.outer(size, size))
+    return size[:, None] * jnp.linalg.cholesky((vectors * jnp.maximum(values, ROUNDING)) @ vectors.T)
 
 
 def torque_places(s: Smoother, at: Point) -> np.ndarray:
