@@ -353,6 +353,13 @@ def test_a_play_that_stays_is_not_called_drifting(parting):
     assert driven_exponent(z, x, mean_period(z), rng()).drift == 0.0
 
 
+def test_a_few_swings_are_too_few_for_a_law():
+    t = DT * np.arange(2200)
+    found = driven_exponent(np.sin(9.0 * t), np.cos(9.0 * t), 350.0, rng())
+    assert found.word == "none"
+    assert found.why == "the drive is measured, but 6 swings are too few for the law of motion"
+
+
 def test_a_law_with_play_is_found_flat_between_kinks(parting):
     x, z, _ = parting
     law = driven_exponent(z, x, mean_period(z), rng())

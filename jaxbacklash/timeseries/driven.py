@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from .force_surface import PARTS, Law, Surface, WeakForm, find_drift, laws, length_at
+from .force_surface import CELLS, PARTS, Law, Surface, WeakForm, find_drift, laws, length_at
 
 SHORTEST = 2000  # samples
 LONGEST = 60000  # of a longer record the middle is used
@@ -91,9 +91,13 @@ def driven_exponent(series: np.ndarray, drive: np.ndarray, period: float, rng: n
         return _none(f"the drive is measured, but {n} samples are too few for the law of motion", first, n)
     if not np.any(drive):
         return _none("the drive does not move", first, n)
-    most = n // max(1, reach // 4) // 20  # cells, at some twenty bumps each
-    weak = WeakForm(series, drive, reach, find_drift(series, drive, reach, min(TABLE, most)))
-    tried = laws(weak, weak.acceleration.size // 20)
+    weak = WeakForm(series, drive, reach)
+    most = weak.acceleration.size // 20  # cells of a table, at twenty bumps each
+    if most < CELLS[0]:
+        return _none(f"the drive is measured, but {n / period:.0f} swings are too few for the law of motion", first, n)
+    drift = find_drift(weak, min(TABLE, most))
+    weak = WeakForm(series, drive, reach, drift) if drift else weak
+    tried = laws(weak, most)
     best = tried[0]
     if best.error > PREDICTS:
         return _none(

@@ -209,17 +209,17 @@ class Law:
         )
 
 
-def find_drift(series: np.ndarray, drive: np.ndarray, reach: int, cells: int) -> float:
+def find_drift(still: WeakForm, cells: int) -> float:
     """By which share the lengths of the law of motion grow over the record; 0 unless that predicts clearly better."""
 
     def error(drift: float) -> float:
-        weak = WeakForm(series, drive, reach, drift)
+        weak = WeakForm(still.series, still.drive, still.reach, drift)
         edges = np.linspace(*weak.range, cells + 1)
         return Law(weak, (edges, weak.table(edges)), "none", 0.0).error
 
     errors = [error(drift) for drift in DRIFTS]
     best = int(np.argmin(errors))
-    if best in (0, len(DRIFTS) - 1) or errors[best] > CLEARLY * error(0.0):
+    if best in (0, len(DRIFTS) - 1) or errors[best] > CLEARLY * errors[DRIFTS.index(0.0)]:
         return 0.0
     near = (DRIFTS[best - 1], DRIFTS[best + 1])
     return float(minimize_scalar(error, bounds=near, method="bounded", options={"xatol": 0.005}).x)
