@@ -21,9 +21,9 @@ from scipy.optimize import least_squares
 import jaxbacklash as jb
 from benchmarks.peers.envelopes import PEERS, Track
 from jaxbacklash.signals import frequency_grid
-from jaxbacklash.skeleton.describing_function import describing_function, free_play_frequency
-from jaxbacklash.skeleton.estimate import Skeletons
-from jaxbacklash.skeleton.modal import base_motion
+from jaxbacklash.skeletons.describing_function import describing_function, free_play_frequency
+from jaxbacklash.skeletons.estimate import Skeletons
+from jaxbacklash.skeletons.modal import base_motion
 from tests.independent import free_play
 
 

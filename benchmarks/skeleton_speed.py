@@ -23,7 +23,7 @@ import numpy as np
 
 import jaxbacklash as jb
 from jaxbacklash.signals import frequency_grid, scalogram
-from jaxbacklash.skeleton.describing_function import dead_zone
+from jaxbacklash.skeletons.describing_function import dead_zone
 
 
 def sweep(seconds: float, rate: float, top: float = 12.0) -> jb.Record:

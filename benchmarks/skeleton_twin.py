@@ -23,9 +23,9 @@ import numpy as np
 import jaxbacklash as jb
 from benchmarks.peers.envelopes import scipy_hilbert
 from benchmarks.skeleton_peers import through
-from jaxbacklash.skeleton.describing_function import axis_crossing
-from jaxbacklash.skeleton.inversion import invert
-from jaxbacklash.skeleton.modal import base_motion
+from jaxbacklash.skeletons.describing_function import axis_crossing
+from jaxbacklash.skeletons.inversion import invert
+from jaxbacklash.skeletons.modal import base_motion
 from tests.independent.rigs import Rig
 from tests.twin import twin
 

@@ -302,12 +302,12 @@ def _plain_warning(message: Any, category: Any, filename: str, lineno: int, file
 def main() -> None:
     """Run the command line; every foreseeable error ends in one sentence and an exit code."""
     warnings.showwarning = _plain_warning
-    # What has been loaded stays, and a command ends soon: looking through all of it for garbage is a tenth of the time.
-    gc.freeze()
+    # Much is loaded, most of it stays, and a command ends soon: looking through all of it for garbage is a fifth of the time.
     gc.set_threshold(100_000, 50, 100)
-    from .program import start
+    if "--help" not in sys.argv[1:]:  # which needs no jax
+        from .program import start
 
-    start(brief=sys.argv[1:2] != ["map"])  # a map computes for long
+        start(brief=sys.argv[1:2] != ["map"])  # a map computes for long
     try:
         app(standalone_mode=False)
     except BadInput as error:

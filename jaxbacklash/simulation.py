@@ -20,7 +20,6 @@ from .excitation import AbstractExcitation, Rest, Sampled
 from .mechanics import Drive
 from .precision import require_double_precision
 from .records import Record
-from .signals import choose_intervals, fit_spline
 from .solvers.substeps import DrivenTerm, PanelRK4
 from .system import System
 
@@ -153,6 +152,8 @@ def _adaptive(args: Driven, state: Any, dt: Any, samples: int, rtol: float, atol
 
 def measured_base(record: Record) -> Sampled:
     """The measured drive of a record as an excitation: base motion through its smoothing spline, force by straight lines."""
+    from .signals import choose_intervals, fit_spline  # scipy's splines load a sixth of a second, for which a map need not wait
+
     x = dx = np.zeros(record.samples)
     if "x" in record.channels:
         values = record.channels["x"]

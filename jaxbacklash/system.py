@@ -12,8 +12,10 @@ from typing import Any
 import equinox as eqx
 import jax.numpy as jnp
 
+from . import sensors as sensors  # where there is a system, the catalogue is whole: these, and the effects
 from .effects.contact import Contact, Damper, Spring, corner
 from .mechanics import AbstractEffect, Drive, Instant, Play, canonical_name
+from .mechanics import catalogue as catalogue
 from .parameters import Scalar, param
 
 State = tuple[Scalar, ...]

@@ -30,8 +30,8 @@ from jaxbacklash.excitation import Chirp, Multisine
 from jaxbacklash.report import figures
 from jaxbacklash.report.result import cross_check
 from jaxbacklash.report.skeleton_report import skeleton_panels
-from jaxbacklash.skeleton.describing_function import TRAP, axis_crossing
-from jaxbacklash.skeleton.inversion import invert
+from jaxbacklash.skeletons.describing_function import TRAP, axis_crossing
+from jaxbacklash.skeletons.inversion import invert
 
 jb.start()
 seconds = 15.0 if os.environ.get("JAXBACKLASH_TINY") else 30.0

@@ -51,6 +51,7 @@ import os, sys, warnings
 import diffrax, equinox, jax, lineax, numpy, optimistix, scipy.interpolate, scipy.special
 before = dict(os.environ), jax.config.values.copy(), list(warnings.filters), numpy.geterr(), sys.excepthook
 import jaxbacklash
+every = [getattr(jaxbacklash, name) for name in jaxbacklash.__all__]
 after = dict(os.environ), jax.config.values.copy(), list(warnings.filters), numpy.geterr(), sys.excepthook
 names = ["environment", "jax settings", "warnings", "numpy errors", "excepthook"]
 changed = [name for name, a, b in zip(names, before, after) if a != b]
@@ -69,6 +70,20 @@ before = matplotlib.rcParams.copy()
 import jaxbacklash.report.figures
 assert matplotlib.rcParams.copy() == before
 assert "matplotlib.pyplot" not in sys.modules
+"""
+    assert fresh(code) == ""
+
+
+def test_names_are_loaded_when_asked_for_and_are_no_folders():
+    code = """
+import sys, types
+import jaxbacklash
+assert "jax" not in sys.modules
+assert len(jaxbacklash.catalogue()) > 20
+import jaxbacklash.cli, jaxbacklash.commands.refine, jaxbacklash.report.map_report
+names = {name: getattr(jaxbacklash, name) for name in jaxbacklash.__all__}
+assert len(names) > 50 and set(names) <= set(dir(jaxbacklash))
+assert not [name for name, value in names.items() if isinstance(value, types.ModuleType)]
 """
     assert fresh(code) == ""
 

@@ -7,10 +7,10 @@ import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.signals import Atoms, Morlet, frequency_grid, highest_frequency, ridge, scalogram
-from jaxbacklash.skeleton.describing_function import axis_crossing
-from jaxbacklash.skeleton.estimate import _read
-from jaxbacklash.skeleton.fundamental import wavelet_fundamental
-from jaxbacklash.skeleton.inversion import WAYS, invert
+from jaxbacklash.skeletons.describing_function import axis_crossing
+from jaxbacklash.skeletons.estimate import _read
+from jaxbacklash.skeletons.fundamental import wavelet_fundamental
+from jaxbacklash.skeletons.inversion import WAYS, invert
 
 METHODS = ("hilbert", "wavelet")
 NAMES = ("backlash", "stiffness", "damping")

@@ -7,7 +7,7 @@ from scipy.special import ellipk
 
 import jaxbacklash as jb
 from jaxbacklash.signals import analytic
-from jaxbacklash.skeleton.describing_function import (
+from jaxbacklash.skeletons.describing_function import (
     TRAP,
     axis_crossing,
     dead_zone,
@@ -15,7 +15,7 @@ from jaxbacklash.skeleton.describing_function import (
     free_play_frequency,
     half_play_for,
 )
-from jaxbacklash.skeleton.modal import base_motion, forcevib, freevib
+from jaxbacklash.skeletons.modal import base_motion, forcevib, freevib
 
 from .independent import events, free_play
 from .independent.harmonic_balance import steady_state

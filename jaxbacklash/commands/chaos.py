@@ -11,7 +11,6 @@ import numpy as np
 from .. import __version__
 from ..errors import BadInput
 from ..records import MeasuredSeries
-from ..report.chaos_report import chaos_report
 from ..report.chaos_result import chaos_json
 from ..timeseries import chaos
 from .common import Reading, json_text, out_folder, progress, write_text
@@ -47,6 +46,8 @@ def run(
         result = chaos_json(found, source, command_line=shlex.join(["jaxbacklash", *sys.argv[1:]]), version=__version__)
         text = json_text(result)
         if folder is not None:
+            from ..report.chaos_report import chaos_report  # pictures bring matplotlib, which a plain run need not wait for
+
             tell("drawing the report", 0.97)
             write_text(folder / "result.json", text)
             chaos_report(found, source, result, folder / "report.html")

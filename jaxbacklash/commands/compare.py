@@ -9,7 +9,6 @@ from pathlib import Path
 from .. import __version__
 from ..fitting import compare as compare_records
 from ..model_file import dump_model, load_model
-from ..report.fit_report import compare_report
 from ..report.result import comparison_json
 from .common import Reading, check_window, json_text, out_folder, progress, write_text
 
@@ -35,6 +34,8 @@ def run(
         words = shlex.join(["jaxbacklash", *sys.argv[1:]])
         result = comparison_json(found, str(model), command_line=words, version=__version__)
         if folder is not None:
+            from ..report.fit_report import compare_report  # pictures bring matplotlib, which a plain run need not wait for
+
             tell("drawing the report", 0.8)
             write_text(folder / "result.json", json_text(result))
             write_text(folder / "model.toml", dump_model(system, translational=translational))

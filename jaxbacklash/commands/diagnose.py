@@ -15,7 +15,6 @@ from ..fitting import Fit
 from ..fitting import fit as fit_records
 from ..fitting.setup import add_effects
 from ..model_file import dump_model
-from ..report.diagnose_report import diagnose_report
 from ..report.refine_result import candidates_json
 from ..report.result import as_json as result_of
 from .common import Reading, check_window, json_text, model_of_file, names, out_folder, progress, write_text
@@ -56,6 +55,8 @@ def run(
         words = shlex.join(["jaxbacklash", *sys.argv[1:]])
         result = diagnosis(fit, found, ranking, command_line=words)
         if folder is not None:
+            from ..report.diagnose_report import diagnose_report  # pictures bring matplotlib, which a plain run need not wait for
+
             tell("drawing the report", 0.95)
             write_text(folder / "result.json", json_text(result))
             heading = f"{record.summary()}\n{found.sentences[0]}"

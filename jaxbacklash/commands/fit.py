@@ -14,7 +14,6 @@ from ..fitting import Fit
 from ..fitting import fit as fit_records
 from ..fitting.setup import add_effects
 from ..model_file import dump_model
-from ..report.fit_report import fit_report
 from ..report.result import as_json as result_of
 from .common import Reading, check_window, json_text, model_of_file, names, out_folder, progress, write_text
 
@@ -60,6 +59,8 @@ def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, *, silent
     result = result_of(found, command="fit", command_line=words, version=__version__)
     text = json_text(result)
     if folder is not None:
+        from ..report.fit_report import fit_report  # pictures bring matplotlib, which a plain run need not wait for
+
         tell("drawing the report", 0.95)
         write_text(folder / "result.json", text)
         heading = f"{found.records[0].summary()}\n{result['verdict_text']}"

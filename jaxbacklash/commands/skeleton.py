@@ -8,7 +8,7 @@ from pathlib import Path
 
 from .. import __version__
 from ..report.skeleton_result import skeletons_json
-from ..skeleton import skeleton
+from ..skeletons import skeleton
 from .common import Reading, json_text, out_folder, progress, write_text
 
 

@@ -19,7 +19,7 @@ from ..fitting import Fit
 from ..fitting.loop import read_plateau
 from ..mechanics import Drive
 from ..signals import choose_intervals, fit_spline
-from ..skeleton import Skeleton, Skeletons, skeleton
+from ..skeletons import Skeleton, Skeletons, skeleton
 from ..system import System
 
 AGREE = 3.0

@@ -10,7 +10,6 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from .family import Family
 from .follow import follow
@@ -98,6 +97,8 @@ def basins(
 
 def _same(period: int, points: np.ndarray, others: np.ndarray, near: float) -> bool:
     if period != CHAOTIC:
+        from scipy.spatial import cKDTree  # loads a fifth of a second, for which a map need not wait
+
         return bool(cKDTree(others).query(points)[0].max() <= near)
     apart = np.abs(points.mean(axis=0) - others.mean(axis=0))
     # Middles of two chaotic runs on one attractor differ by the scatter of a mean; five of it, or half a play, is the same place.

@@ -1,11 +1,6 @@
 """Records: what was measured, read from a file and refused at birth when it cannot be used."""
 
-from .measured_series import MeasuredSeries as MeasuredSeries
-from .measured_series import read_series as read_series
-from .orientation import oriented as oriented
-from .reader import read_record as read_record
-from .record import Record as Record
-from .units import parse_columns as parse_columns
-from .units import parse_scales as parse_scales
-from .units import parse_units as parse_units
-from .writer import write_record as write_record
+import lazy_loader as _lazy
+
+# What it holds is listed in __init__.pyi, and loaded when it is asked for.
+__getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)

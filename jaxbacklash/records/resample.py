@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from scipy import interpolate
 
 from . import time_axis
 from .checks import number, wrong
@@ -87,6 +86,8 @@ def _smooth(values: np.ndarray) -> bool:
 def _interpolated(t: np.ndarray, values: np.ndarray, at: np.ndarray) -> np.ndarray:
     """Values of a column at other times within those of the samples."""
     if _smooth(values):
+        from scipy import interpolate  # a sixth of a second to import, and few records need it
+
         return interpolate.CubicSpline(t, values)(at)
     after = np.clip(np.searchsorted(t, at), 1, t.size - 1)
     return values[np.where(at - t[after - 1] < t[after] - at, after - 1, after)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from ..skeleton import Response
+from ..skeletons import Response
 from .drawing import drawn_in_style, new_figure, readable_log
 from .style import GAP, HELDOUT, INK, MEASURED, MEDIUM, MODEL, with_unit
 

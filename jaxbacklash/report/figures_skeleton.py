@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ..signals import Scalogram
-from ..skeleton import Skeleton, Skeletons
-from ..skeleton.describing_function import axis_crossing, describing_function
-from ..skeleton.modal import modal
+from ..skeletons import Skeleton, Skeletons
+from ..skeletons.describing_function import axis_crossing, describing_function
+from ..skeletons.modal import modal
 from .drawing import drawn_in_style, empty_figure, in_degrees, new_figure, readable_log
 from .style import GAP, HELDOUT, INK, MEASURED, MEDIUM, MODEL, SHORT, TALL, with_unit
 from .thinning import envelope

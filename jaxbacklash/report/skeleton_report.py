@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..skeleton import Skeletons
-from ..skeleton.fundamental import WaveletFundamental
+from ..skeletons import Skeletons
+from ..skeletons.fundamental import WaveletFundamental
 from .figures import backbone_and_damping, envelopes, instantaneous_frequency, ridge_over_scalogram, skeleton_force, to_svg
 from .html import Panel, write_report
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..skeleton import Skeletons
-from ..skeleton.print_skeleton import verdict
+from ..skeletons import Skeletons
+from ..skeletons.print_skeleton import verdict
 from .result import SCHEMA, about_record, finite
 
 
