@@ -108,6 +108,12 @@ class AbstractEffect(eqx.Module):
         """Points from which a fit may start where this law takes the place of a fitted one of its ``family``; none: `guesses`."""
         return []
 
+    def scaled(self, factor: float) -> AbstractEffect:
+        """The same law ``factor`` times as strong: along a given motion it exerts ``factor`` times the torque."""
+        described = {f.name: f.metadata["spec"] for f in dataclasses.fields(self) if "spec" in f.metadata}
+        nulls = {n: s.null for n, s in described.items() if s.null is not None and not s.fixed}
+        return dataclasses.replace(self, **{n: null + factor * (getattr(self, n) - null) for n, null in nulls.items()})
+
     def torque(self, now: Instant) -> Scalar:
         """Torque on the link [N m], dry friction included (in the direction ``now`` knows, else smoothed)."""
         return jnp.zeros_like(now.y)

@@ -13,6 +13,7 @@ from .candidates import Candidate, rank
 from .evidence import AS_WELL, NOISE_FLOOR, UNEXPLAINED, demanded, excess, explained, gain, measures_only, significance
 from .memories import Member, families, may_replace, members
 from .tuning import apart
+from .under_noise import promised
 from .workbench import PATIENCE, Trial, Workbench, adequate, strengths
 
 MOST_EFFECTS = 5
@@ -134,7 +135,7 @@ class Search:
             steps = self.with_hidden(steps)
             if not explained(steps[-1].trial):
                 steps = self.forward(steps[-1].trial, steps, LITTLE)
-        steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(steps))))
+        steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(self.with_unseen(steps)))))
         return steps
 
     def trim(self, steps: list[Step]) -> list[Step]:
@@ -172,6 +173,30 @@ class Search:
             path = self.forward(settled, [replace(steps[0], trial=base), Step(settled, added, dropped, ())], MUCH)
             if path[-1].trial.tied and (not final.tied or path[-1].trial.criterion < final.criterion - demanded(self.bench)):
                 return path
+        return steps
+
+    def with_unseen(self, steps: list[Step]) -> list[Step]:
+        """The path with a law with internal states that the noise hides, where the trajectory of the last model asks for one.
+
+        The joint's own numbers can take in most of what a flexible link does, and leave too little to be seen without simulation.
+        """
+        final = steps[-1].trial
+        if not final.tied or not adequate(final) or self.bench.outright or len(final.names) >= MOST_EFFECTS:
+            return steps
+        for name, law in self.bench.laws.items():
+            if not law.states or law.family or name in final.names:
+                continue
+            self.progress(f"looking for {name} under the noise", 0.65)
+            fall, effect = promised(self.bench, final, law)
+            if fall < GLIMPSED * demanded(self.bench):
+                continue
+            effects = {**self.bench.effects(final), name: effect}
+            trial = self._keep(self.bench.fit(effects, final, tied=True, patience=WHOLE, followed=True))
+            evidence = gain(final, trial)
+            if evidence > demanded(self.bench):
+                settled, dropped = self.prune(self.settle(trial), spare=name)
+                seen = replace(steps[-1], evidence={**steps[-1].evidence, name: evidence})
+                return self.forward(settled, [*steps[:-1], seen, Step(settled, name, dropped, ())], MUCH)
         return steps
 
     def runs_through(self, trial: Trial) -> bool:

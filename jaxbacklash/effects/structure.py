@@ -30,6 +30,10 @@ class FlexibleLink(AbstractEffect):
         small = 0.1 * float(system.inertia)
         return [cls(small, small * w * w, 0.02 * small * w) for w in 2.0 * np.pi * np.geomspace(15.0, 60.0, 5)]
 
+    def scaled(self, factor: float) -> FlexibleLink:
+        # A smaller inertia that swings at the same frequency, as well damped.
+        return FlexibleLink(factor * self.J2, factor * self.k2, factor * self.c2)
+
     def torque(self, now: Instant) -> Scalar:
         y2, dy2 = now.state
         return self.k2 * (y2 - now.y) + self.c2 * (dy2 - now.dy)

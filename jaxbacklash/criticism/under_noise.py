@@ -1,0 +1,74 @@
+"""What a law with internal states promises beside a fitted trajectory, even where noise hides it from the quick look.
+
+A law that is weak exerts on the model's own motion, which is free of noise, a torque that is known in advance up to its size. The
+same program that fits the model fits it again with small shares of that torque applied as a force: how the misfit answers is the
+score of the law with everything else free to move, as in a score test (Rao 1948), at no new compilation.
+"""
+
+from __future__ import annotations
+
+import equinox as eqx
+import numpy as np
+
+from ..fitting.levenberg import ArrowLevenbergMarquardt, minimise
+from ..fitting.search import TIES
+from ..fitting.shooting import Prediction, Unknowns
+from ..mechanics import AbstractEffect
+from ..records import Record
+from .along_motion import Motion, motion, own_torques
+from .workbench import Trial, Workbench
+
+SHARE = 0.01
+"""Part of a guessed law's torque that is applied, and twice as much: too little to bend the trajectory."""
+STEPS = 3
+"""Linearisations that the fit gets to answer with: it starts where it had ended."""
+WEAKEST, STRONGEST = 0.05, 3.0
+"""Sizes, as multiples of the guess, within which the promise of a straight line is believed."""
+
+
+def promised(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> tuple[float, AbstractEffect]:
+    """The likeliest of a law's guesses beside a tied trial, at the size that promises most.
+
+    Returns
+    -------
+    Fall of the sum of squares that it promises, in units of the noise, 0 where none does; the law to start a fit from
+    """
+    guesses = law.guesses(trial.system)
+    problem, _ = bench.problem(bench.effects(trial), trial.system)
+    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1]))
+    unknowns = Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
+    windows = bench.windows
+    applied = np.asarray(windows.force)
+    edges = np.asarray(windows.t0)[:, None] + float(windows.panel) * np.arange(applied.shape[1])
+
+    def answer(torque: np.ndarray) -> tuple[float, Prediction]:
+        pushed = eqx.tree_at(lambda p: p.windows.force, problem, applied + torque)
+        stats = minimise(pushed, unknowns, ArrowLevenbergMarquardt(atol=1e-4, damping=1e-9, limit=STEPS)).stats
+        return float(stats["cost"]), stats["predicted"]
+
+    still, predicted = answer(np.zeros(()))
+    along = model_motion(bench, predicted)
+    best = 0.0, guesses[0]
+    for guess, torque in zip(guesses, own_torques(guesses, trial.system, along)):
+        torque = np.interp(edges, along.t, torque)
+        once, twice = (answer(k * SHARE * torque)[0] - still for k in (1, 2))
+        # The parabola through three points: its slope at no torque, its curvature.
+        slope, curvature = (2.0 * once - 0.5 * twice) / SHARE, (twice - 2.0 * once) / SHARE**2
+        if not (np.isfinite(curvature) and curvature > 0.0 and slope < 0.0):
+            continue
+        fall = slope**2 / curvature
+        if best[0] < fall < 2.0 * still:
+            best = fall, guess.scaled(float(np.clip(-slope / curvature, WEAKEST, STRONGEST)))
+    return best
+
+
+def model_motion(bench: Workbench, predicted: Prediction) -> Motion:
+    """The motion of a fitted trajectory at the samples of the record, that of the measured one where windows end before it."""
+    record = bench.record
+    seen = np.asarray(bench.windows.weight) > 0.0
+    channels = dict(record.channels)
+    for name, values in ((record.observed_name, predicted.motion), ("x", predicted.input)):
+        if name in channels and np.shape(values) == seen.shape and not (name == "x" and bench.windows.by_force):
+            values = np.asarray(values)[seen][: record.samples]
+            channels[name] = np.concatenate([values, channels[name][values.size :]])
+    return motion(Record(record.t, channels))

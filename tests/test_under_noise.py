@@ -1,0 +1,64 @@
+"""A law with internal states that the noise hides: what it promises beside a fitted trajectory, and whether that comes true."""
+
+import numpy as np
+import pytest
+
+import jaxbacklash as jb
+from jaxbacklash.criticism.along_motion import motion, own_torques
+from jaxbacklash.criticism.evidence import demanded
+from jaxbacklash.criticism.search import GLIMPSED
+from jaxbacklash.criticism.under_noise import promised
+from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.fitting.setup import base_system
+from jaxbacklash.records import Record
+from tests.hidden import NOISE, hidden
+
+LINK = {"J2": 0.4, "k2": 13400.0, "c2": 1.4}
+
+
+def noisier(record, times, seed):
+    """The same record with so many times its noise."""
+    rng, more = np.random.default_rng(seed), NOISE * np.sqrt(times**2 - 1.0)
+    return Record(record.t, {n: v + more * rng.standard_normal(v.size) for n, v in record.channels.items()})
+
+
+def trajectory(record, rig):
+    """A workbench, and the joint alone fitted to all of the record in one piece."""
+    base, free, _ = base_system(record, "joint", rig.inertia)
+    bench = Workbench(record, base, free, 0.2)
+    loose = bench.fit({}, patience=60)
+    return bench, bench.fit({}, loose, tied=True, patience=60)
+
+
+@pytest.mark.slow
+def test_a_flexible_link_under_ten_times_the_noise_is_promised_and_found():
+    record, rig, _, _ = hidden("flexible_link", "chirp", 3, **LINK)
+    record = noisier(record, 15.0, 4)
+    bench, alone = trajectory(record, rig)
+    law = bench.laws["flexible_link"]
+    unseen = bench.quick.evidence(alone.system, alone.free, law.guesses(alone.system))
+    fall, start = promised(bench, alone, law)
+    needed = GLIMPSED * demanded(bench)
+    assert fall > needed > unseen
+    with_it = bench.fit({"flexible_link": start}, alone, tied=True, patience=60, followed=True)
+    # The promise is that of a guessed frequency, near no link at all: the whole law keeps most of it, or more.
+    assert 2.0 * (alone.cost - with_it.cost) > 0.5 * fall
+    assert with_it.value["flexible_link.J2"] == pytest.approx(LINK["J2"], rel=0.3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("times", [1.0, 10.0])
+def test_a_joint_without_it_promises_nothing(times):
+    record, rig, _, _ = hidden(None, "chirp", 5)
+    bench, alone = trajectory(noisier(record, times, 6), rig)
+    assert promised(bench, alone, bench.laws["flexible_link"])[0] < GLIMPSED * demanded(bench)
+
+
+@pytest.mark.parametrize("law", [jb.FlexibleLink(**LINK), jb.Gravity(-20.0), jb.CubicStiffness(1e6)])
+def test_a_law_twice_as_strong_exerts_twice_the_torque(law):
+    t = np.linspace(0.0, 2.0, 1001)
+    m = motion(Record(t, {"x": 0.05 * np.sin(20.0 * t), "z": 0.03 * np.sin(20.0 * t + 1.0)}))
+    joint = jb.base_motion_joint(inertia=3.0, backlash=0.02, stiffness=1e4, damping=20.0)
+    once, twice = (own_torques([law.scaled(f)], joint, m)[0] for f in (1.0, 2.0))
+    assert np.max(np.abs(once)) > 0.0
+    np.testing.assert_allclose(twice, 2.0 * once, rtol=1e-9, atol=1e-9 * np.max(np.abs(once)))
