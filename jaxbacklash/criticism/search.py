@@ -324,6 +324,10 @@ class Search:
             if not tried:
                 break
             name = self.best(current, tried, least)
+            if self.bench.laws[name].states and not self.settle(tried[name]).tied:
+                # It soaked up what free windows leave, and no trajectory follows it: what acts without a state goes first.
+                plain = self.clear(current, tried, least)
+                name = self.best(current, plain, least) if plain else name
             if evidence[name] < demanded(self.bench) or self.nibbles(current, tried[name], least):
                 break
             replaced = tuple(sorted(current.names - tried[name].names))
@@ -402,16 +406,17 @@ class Search:
         enough = {n: t for n, t in tried.items() if explained(t)}
         # A law with internal states has one to choose in every free window and soaks up what others would explain.
         plain = {n: t for n, t in tried.items() if not self.bench.laws[n].states}
-        clear = {
-            n: t for n, t in plain.items()
-            if gain(current, t) > demanded(self.bench) and not self.nibbles(current, t, least)
-        }  # fmt: skip
-        tried = enough or (plain if clear else tried)
+        tried = enough or (plain if self.clear(current, tried, least) else tried)
         lowest = min(t.criterion for t in tried.values())
         # Among those the evidence decides; as long as more is missing, what will come changes it by shares of the whole.
         slack = demanded(self.bench) if enough else max(1.0, (1.0 - AS_WELL) * (current.criterion - lowest))
         level = [n for n, t in tried.items() if t.criterion - lowest < slack]
         return min(level or tried, key=lambda n: (len(tried[n].free), measures_only(self.bench.laws[n]), tried[n].criterion))
+
+    def clear(self, current: Trial, tried: dict[str, Trial], least: float) -> dict[str, Trial]:
+        """The candidates without internal states that clearly help."""
+        plain = {n: t for n, t in tried.items() if not self.bench.laws[n].states}
+        return {n: t for n, t in plain.items() if gain(current, t) > demanded(self.bench) and not self.nibbles(current, t, least)}
 
     def nibbles(self, before: Trial, after: Trial, least: float) -> bool:
         """Whether an addition takes away only little of a misfit of which a clear rest remains."""
