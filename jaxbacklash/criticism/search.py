@@ -315,9 +315,12 @@ class Search:
             promised = {c.name for c in ranking if c.gain > SURE * demanded(self.bench)}
             lost = any(not t.tied or (t.cost > current.cost and n in promised) for n, t in tried.items())
             if lost and current.tied and not self.runs_through(current):
-                # A trajectory in one piece has stuck on the way to a clear gain: this stage is judged on free windows.
-                current = self.loosened(current)
-                tried = self.attempts(current, ranking)
+                # A trajectory in one piece has stuck on the way to a clear gain: this stage is judged on free windows, unless
+                # they show nothing and another candidate went all the way.
+                loose = self.loosened(current)
+                others = self.attempts(loose, ranking)
+                if self.helps(loose, others) or not self.helps(current, {n: t for n, t in tried.items() if t.tied}):
+                    current, tried = loose, others
             tried = self.finished(current, tried)
             evidence = {n: gain(current, t) for n, t in tried.items()}
             steps[-1] = replace(steps[-1], ranking=ranking, evidence=evidence)
@@ -334,6 +337,10 @@ class Search:
             current, dropped = self.prune(self.settle(tried[name]), spare=name)
             steps.append(Step(current, name, replaced + dropped, ()))
         return steps
+
+    def helps(self, current: Trial, tried: dict[str, Trial]) -> bool:
+        """Whether any of some candidates brings what is demanded."""
+        return any(gain(current, t) > demanded(self.bench) for t in tried.values())
 
     def attempts(self, current: Trial, ranking: tuple[Candidate, ...]) -> dict[str, Trial]:
         """The likeliest candidates really refitted; few where the first already leaves nothing but noise."""
