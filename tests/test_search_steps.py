@@ -106,6 +106,8 @@ class Law(SimpleNamespace):
 def test_a_law_is_reduced_to_the_simpler_one_that_does_as_well(monkeypatch):
     significant(monkeypatch, 100.0)
     monkeypatch.setattr("jaxbacklash.criticism.search.gain", lambda before, after: before.criterion - after.criterion)
+    at = {"bound": False}
+    monkeypatch.setattr("jaxbacklash.criticism.search.shapeless", lambda trial, name: at["bound"])
     rich = Model(frozenset({"stribeck"}), cost=100.0, free=("backlash", "Tc", "Ts"), tied=False)
     plain = Model(frozenset({"coulomb_joint"}), cost=100.4, free=("backlash", "Tc"), tied=False)
     search = Search(Bench())
@@ -117,6 +119,8 @@ def test_a_law_is_reduced_to_the_simpler_one_that_does_as_well(monkeypatch):
     worse = replace(plain, cost=150.0)
     monkeypatch.setattr(search, "simplified", lambda final, name, other: worse)
     assert len(search.reduced([Step(rich, "stribeck", (), ())])) == 1
+    at["bound"] = True
+    assert len(search.reduced([Step(rich, "stribeck", (), ())])) == 2
 
 
 def test_what_fell_behind_on_free_windows_is_not_tied(monkeypatch):

@@ -5,13 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from ..mechanics import AbstractEffect
-from ..parameters import specs
+from ..parameters import specs, values
 from .workbench import Trial, Workbench, strengths
 
 NOISE_FLOOR = 1.03
 """Root of the reduced chi-square up to which what is left counts as noise, since the noise itself is estimated."""
 AS_WELL = 0.98
 """Share of the best candidate's gain that counts as doing as well: then the simpler law is taken."""
+UNDETERMINED = 0.5
+"""Standard error, as a share of the value, above which a shape is not determined, as in the estimates of a fit."""
 UNEXPLAINED = 0.02
 """Reduced chi-square above 1 that is too much for an error of the estimated noise."""
 
@@ -41,13 +43,33 @@ def measures_only(law: type[AbstractEffect]) -> bool:
     return law.torque is AbstractEffect.torque and law.reshape is AbstractEffect.reshape
 
 
-def significance(trial: Trial, name: str) -> float:
-    """How many standard errors the strongest strength of an effect of the model stands from its null value."""
+def standard_errors(trial: Trial) -> np.ndarray:
+    """Of all columns, those that only pad included; wider where a rest remains that is no noise."""
     size = np.sqrt(np.maximum(np.diag(trial.schur), 1e-300))
     # What only a sum determines must come out uncertain, not as a pseudo-inverse has it.
     inverse = np.linalg.inv(trial.schur / np.outer(size, size) + 1e-12 * np.eye(size.size))
     errors = np.sqrt(np.maximum(np.diag(inverse), 1e-300)) / size * trial.scales
-    errors *= np.sqrt(max(1.0, trial.misfit**2) * trial.correlation)
+    return np.asarray(errors * np.sqrt(max(1.0, trial.misfit**2) * trial.correlation))
+
+
+def shapeless(trial: Trial, name: str) -> bool:
+    """Whether a shape of an effect is not determined: at its bound, or its standard error exceeds half of its value.
+
+    What such a law adds to a simpler one that it contains acts where the record shows nothing.
+    """
+    errors = standard_errors(trial)
+    described, found = specs(trial.system.effects[name]), values(trial.system.effects[name])
+    shapes = {n: s for n, s in described.items() if s.null is None and not s.fixed and f"{name}.{n}" in trial.free}
+    return any(
+        found[n] <= s.lower * (1.0 + 1e-6) or found[n] >= s.upper * (1.0 - 1e-6)
+        or errors[trial.free.index(f"{name}.{n}")] > UNDETERMINED * abs(found[n])
+        for n, s in shapes.items()
+    )  # fmt: skip
+
+
+def significance(trial: Trial, name: str) -> float:
+    """How many standard errors the strongest strength of an effect of the model stands from its null value."""
+    errors = standard_errors(trial)
     described = specs(trial.system.effects[name])
     found = [
         abs(trial.value[full] - (described[n].null or 0.0)) / max(errors[trial.free.index(full)], 1e-300)

@@ -10,7 +10,7 @@ from ..fitting.search import ADEQUATE, silent
 from ..mechanics import AbstractEffect
 from ..parameters import specs, values, with_values
 from .candidates import Candidate, rank
-from .evidence import AS_WELL, NOISE_FLOOR, UNEXPLAINED, demanded, excess, explained, gain, measures_only, significance
+from .evidence import AS_WELL, NOISE_FLOOR, UNEXPLAINED, demanded, excess, explained, gain, measures_only, shapeless, significance
 from .memories import Member, families, may_replace, members
 from .tuning import apart
 from .under_noise import promised
@@ -257,7 +257,8 @@ class Search:
         for name in sorted(final.names):
             for other in self.bench.laws[name].absorbs:
                 simpler = self.simplified(final, name, other)
-                if gain(simpler, final) < demanded(self.bench):
+                richer = final if simpler.tied == final.tied else self.loosened(final)
+                if gain(simpler, richer) < demanded(self.bench) or shapeless(final, name):
                     settled, dropped = self.prune(self.settle(simpler))
                     return self.reduced([*steps, Step(settled, other, (name, *dropped), ())])
         return steps
@@ -296,7 +297,10 @@ class Search:
         effects = self.bench.effects(final)
         shared = {n: v for n, v in values(effects.pop(name)).items() if n in specs(self.bench.laws[other]())}
         effects[other] = with_values(self.bench.laws[other](), shared)
-        return self._keep(self.bench.fit(effects, final, tied=final.tied, patience=WHOLE))
+        trial = self._keep(self.bench.fit(effects, final, tied=final.tied, patience=WHOLE))
+        if final.tied and not trial.done and trial.misfit > STUCK * final.misfit:
+            return self._keep(self.bench.fit(effects, final, tied=False, patience=WHOLE))
+        return trial
 
     def finish(self, trial: Trial) -> Trial:
         """The trial fitted to the end."""
