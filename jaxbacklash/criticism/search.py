@@ -371,6 +371,10 @@ class Search:
             tried[c.name] = self.add(current, c)
             if not looked and not explained(tried[c.name]):
                 tried, looked = tried | self.memories(current, ranking), True
+        if not explained(current):
+            # Beside a law that sticks its richer relative is judged badly from outside: it is always tried.
+            kin = [c for c in ranking if c.name not in tried and not current.names.isdisjoint(self.bench.laws[c.name].absorbs)]
+            tried |= {c.name: self.add(current, c) for c in kin}
         return {name: trial for name, trial in tried.items() if math.isfinite(trial.criterion)}
 
     def finished(self, current: Trial, tried: dict[str, Trial]) -> dict[str, Trial]:
