@@ -191,7 +191,9 @@ class Search:
             if fall < GLIMPSED * demanded(self.bench):
                 continue
             effects = {**self.bench.effects(final), name: effect}
-            trial = self._keep(self.bench.fit(effects, final, tied=True, patience=WHOLE, followed=True))
+            trial = self._keep(self.bench.fit(effects, final, tied=True, followed=True))
+            if not trial.done and trial.criterion < final.criterion:
+                trial = self.finish(trial)
             evidence = gain(final, trial)
             if evidence > demanded(self.bench):
                 settled, dropped = self.prune(self.settle(trial), spare=name)

@@ -20,6 +20,8 @@ from .workbench import Trial, Workbench
 
 SHARE = 0.01
 """Part of a guessed law's torque that is applied, and twice as much: too little to bend the trajectory."""
+FURTHER, BENT = 4.0, 0.25
+"""A third such part, at which the answer is foretold, and how far off it may be."""
 STEPS = 3
 """Linearisations that the fit gets to answer with: it starts where it had ended."""
 WEAKEST, STRONGEST = 0.05, 3.0
@@ -51,13 +53,20 @@ def promised(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> tuple
     best = 0.0, guesses[0]
     for guess, torque in zip(guesses, own_torques(guesses, trial.system, along)):
         torque = np.interp(edges, along.t, torque)
-        once, twice = (answer(k * SHARE * torque)[0] - still for k in (1, 2))
+        once = answer(SHARE * torque)[0] - still
+        if not once < 0.0:
+            continue  # less than half of that share is best, if any
+        twice = answer(2.0 * SHARE * torque)[0] - still
         # The parabola through three points: its slope at no torque, its curvature.
         slope, curvature = (2.0 * once - 0.5 * twice) / SHARE, (twice - 2.0 * once) / SHARE**2
         if not (np.isfinite(curvature) and curvature > 0.0 and slope < 0.0):
             continue
         fall = slope**2 / curvature
-        if best[0] < fall < 2.0 * still:
+        if not best[0] < fall < 2.0 * still:
+            continue
+        # Where the answer is no parabola, noise is too small for a trajectory to bend so little: it promises nothing.
+        further = slope * FURTHER * SHARE + 0.5 * curvature * (FURTHER * SHARE) ** 2
+        if abs(answer(FURTHER * SHARE * torque)[0] - still - further) < BENT * abs(further):
             best = fall, guess.scaled(float(np.clip(-slope / curvature, WEAKEST, STRONGEST)))
     return best
 
