@@ -119,8 +119,8 @@ def measured(map_: ExponentMap, options: argparse.Namespace) -> None:
         inside = any(first <= play <= last for first, last in found.pieces)
         middle = np.nan if found.value is None else 100.0 * (found.value / play - 1.0)
         print(f"  play {np.degrees(play):.3f} deg: from exponents {middle:+6.2f} %, interval {low:+5.1f} to {high:+5.1f} %, in "
-              f"{len(found.pieces)} pieces that {'hold' if inside else 'miss'} it; fit {100 * value:+.4f} +- {100 * half:.4f} % "
-              f"({spent:.1f} s)", flush=True)  # fmt: skip
+              f"{len(found.pieces)} pieces that {'hold' if inside else 'miss'} it"
+              + (f"; fit {100 * value:+.4f} +- {100 * half:.4f} % ({spent:.1f} s)" if fit else ""), flush=True)  # fmt: skip
         if number == 0 and options.out is not None:
             draw(options.out, map_, found, play, fit)
     told = [found for _, found, _, _ in rows if found.interval is not None]
