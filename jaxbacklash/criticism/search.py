@@ -333,14 +333,15 @@ class Search:
             if not tried:
                 break
             name = self.best(current, tried, least)
-            if self.bench.laws[name].states and not self.settle(tried[name]).tied:
-                # It soaked up what free windows leave, and no trajectory follows it: what acts without a state goes first.
-                plain = self.clear(current, tried, least)
-                name = self.best(current, plain, least) if plain else name
             if evidence[name] < demanded(self.bench) or self.nibbles(current, tried[name], least):
                 break
+            settled = self.settle(tried[name])
+            if self.bench.laws[name].states and not settled.tied and (plain := self.clear(current, tried, least)):
+                # It soaked up what free windows leave, and no trajectory follows it: what acts without a state goes first.
+                name = self.best(current, plain, least)
+                settled = self.settle(plain[name])
             replaced = tuple(sorted(current.names - tried[name].names))
-            current, dropped = self.prune(self.settle(tried[name]), spare=name)
+            current, dropped = self.prune(settled, spare=name)
             steps.append(Step(current, name, replaced + dropped, ()))
         return steps
 
