@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..fitting.estimates import MOST_UNCERTAIN
 from ..mechanics import AbstractEffect
 from ..parameters import specs, values
 from .workbench import Trial, Workbench, strengths
@@ -12,8 +13,6 @@ NOISE_FLOOR = 1.03
 """Root of the reduced chi-square up to which what is left counts as noise, since the noise itself is estimated."""
 AS_WELL = 0.98
 """Share of the best candidate's gain that counts as doing as well: then the simpler law is taken."""
-UNDETERMINED = 0.5
-"""Standard error, as a share of the value, above which a shape is not determined, as in the estimates of a fit."""
 UNEXPLAINED = 0.02
 """Reduced chi-square above 1 that is too much for an error of the estimated noise."""
 
@@ -62,7 +61,7 @@ def shapeless(trial: Trial, name: str) -> bool:
     shapes = {n: s for n, s in described.items() if s.null is None and not s.fixed and f"{name}.{n}" in trial.free}
     return any(
         found[n] <= s.lower * (1.0 + 1e-6) or found[n] >= s.upper * (1.0 - 1e-6)
-        or errors[trial.free.index(f"{name}.{n}")] > UNDETERMINED * abs(found[n])
+        or errors[trial.free.index(f"{name}.{n}")] > MOST_UNCERTAIN * abs(found[n])
         for n, s in shapes.items()
     )  # fmt: skip
 

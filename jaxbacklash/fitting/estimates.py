@@ -14,6 +14,8 @@ from ..records import Record
 from ..system import System
 
 FOUND, ONE_SIDED, UNDETERMINED = "found", "one-sided", "not determined"
+MOST_UNCERTAIN = 0.5
+"""Standard error, as a share of the value, above which a value is not determined."""
 CARRIED = 0.1
 """Share of the largest transmitted force that only contact can carry."""
 NORMAL_95 = float(ndtri(0.975))
@@ -100,7 +102,7 @@ def judge(
         verdict, why = reasons.get(name, (FOUND, ""))
         if verdict == FOUND and not np.isfinite(error):
             verdict, why = UNDETERMINED, "this record does not change with it"
-        elif verdict == FOUND and spec.positive and error > 0.5 * abs(value):
+        elif verdict == FOUND and spec.positive and error > MOST_UNCERTAIN * abs(value):
             verdict, why = UNDETERMINED, "its standard error exceeds half of its value"
         hidden = verdict != FOUND
         finite = np.isfinite(error) and not hidden
