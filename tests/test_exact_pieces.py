@@ -14,9 +14,10 @@ from jaxbacklash.dynamics.plan import Plan
 from jaxbacklash.effects import AsymmetricGap, ContactDamping, CubicStiffness, GapSpring, Preload
 from jaxbacklash.excitation import Chirp, Harmonic
 from jaxbacklash.models import base_motion_joint, case_1, case_2, dimensionless, two_link
+from jaxbacklash.solvers import linear_pieces
 from jaxbacklash.solvers.exact_periods import advance_periods, begin
 
-from .independent import exponents
+from .independent import exponents, taylor
 
 advance = jax.jit(advance_periods)
 
@@ -65,6 +66,37 @@ def test_the_tangent_vector_is_the_derivative_of_the_motion():
     slope = np.stack([up.p - down.p, up.v - down.v]) / (2.0 * step)
     tangent = np.exp(centre.growth) * np.stack([centre.dp, centre.dv])
     np.testing.assert_allclose(tangent, slope, rtol=1e-5, atol=1e-7)
+
+
+@pytest.mark.parametrize("damping", [0.04, 0.005])
+def test_a_leg_ends_on_the_edge_however_it_gets_there(damping):
+    """Steep, grazing, or back through the edge it came from: what a lane that leaves its branch misses the edge by."""
+    rng, lanes = np.random.default_rng(1), 1024
+    one = np.ones(lanes)
+    numbers = damping * one, 0.0 * one, 0.0 * one, one, 0.0 * one, 1.0 / rng.uniform(1.0, 5.0, lanes), 0.2 * one
+    pieces = linear_pieces.LinearPieces(*(jnp.asarray(n) for n in numbers))
+    phase = rng.uniform(0.0, 2.0 * np.pi, lanes)
+    start = *rng.uniform(-0.5, 0.5, (2, lanes)), one, 0.0 * one, 0.0 * one, np.cos(phase), np.sin(phase), 1e9 * one
+    now, missed = linear_pieces.Motion(*(jnp.asarray(n) for n in start)), []
+    play, contact = linear_pieces.branches(pieces)
+    step = jax.jit(lambda now: linear_pieces.leg(pieces, play, contact, now))
+    for _ in range(200):
+        after = step(now)
+        edge = jnp.where(now.side == 0.0, after.side, now.side)
+        missed.append(np.abs(np.asarray(after.p - edge))[np.asarray(after.side != now.side)])
+        now = after._replace(left=jnp.asarray(1e9 * one))
+    missed = np.concatenate(missed)
+    assert missed.size > 50 * lanes
+    assert missed.max() < 1e-6
+
+
+def test_a_cell_that_grazes_has_the_exponent_of_an_independent_program():
+    """At 1/alpha = 2.244 a motion of six periods leaves a contact slowly and turns back just inside the play."""
+    cell, start = exponents.Cell(2.2441471571906355, 0.02), (0.49946405, 0.09593101)
+    _, growth, _ = taylor.follow(cell, 300, start)
+    system, drive = PaperCase(1).build({"inverse_alpha": np.array([cell.inverse_alpha])})
+    found, _ = follow(system, drive, np.array([start[0]]), np.array([start[1]]), Plan(300, 0, 6))
+    assert float(found.lyapunov[0]) == pytest.approx((growth[-1] - growth[0]) / (300 * 2.0 * np.pi / 0.2), abs=1e-9)
 
 
 def systems():

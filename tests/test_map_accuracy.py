@@ -72,8 +72,25 @@ def test_real_cells_are_explained_and_agree(capsys):
     unlike = accuracy.compare("both", ours, referee)
     assert unlike.size == 0
     assert "met" in capsys.readouterr().out
-    left = accuracy.explain_regular(inverse_alpha[:2], 40, referee.end[:, :2], accuracy.by_ours, accuracy.by_taylor)
+    both = accuracy.by_ours, accuracy.by_taylor
+    left, settled = accuracy.explain_regular(inverse_alpha[:2], 40, referee.end[:, :2], *both)
     assert left.max() < 1e-6
+    assert settled.max() == 40
+
+
+def test_a_cell_that_never_settles_is_said_not_to():
+    """Two programs that differ by more than 1e-4 wherever they start."""
+
+    def says(value):
+        return lambda cells, periods, skip, start: line(np.full(len(cells), value), np.ones((2, len(cells))))
+
+    left, settled = accuracy.explain_regular(np.array([2.0]), 10, np.zeros((2, 1)), says(-0.1), says(-0.2), (5, 25))
+    assert left[0] == pytest.approx(0.1)
+    assert settled[0] == 250
+
+
+def test_the_divergence_is_found():
+    inverse_alpha = np.array([3.0])
     assert accuracy.divergence(inverse_alpha[:1]) < 1e-8
 
 

@@ -30,9 +30,11 @@ TURN = 1.0
 """Longest leg in radians of the drive."""
 FADE = 0.1
 """Longest leg in units of 2 / damping."""
-HALLEY = 2
+HALLEY = 3
+LOST = 1e-3
+"""Distance from the edge [half plays] at the last point of the search, beyond which the leg ends short of the edge."""
 THIRD = 1.0 / 3.0  # a division takes ten times as long as a product
-MISS = 1.5e-2
+MISS = 0.1
 """Most that the search for an edge may be off, as a share of a leg."""
 NEAR = 3e-4
 """A motion that turns back this close to an edge [half plays] is judged at its turning point by the exact solution."""
@@ -254,15 +256,16 @@ def leg(system: LinearPieces, play: Branch, contact: Branch, now: Motion) -> Mot
     b = -omega * system.amplitude * sin - on.damping * a - on.stiffness * v
     gap = p - jnp.where(touching, now.side, way)
     leaves = there & (leaves | (grazes & (gap * way > 0.0)))
-    late = _miss(gap, v, a, b, way, MISS * step)
+    c = -omega * omega * system.amplitude * cos - on.damping * b - on.stiffness * a
+    late = _miss(gap, v, (a, b, c), way, MISS * step)
     late = jnp.where(leaves, late, 0.0)
     da = -on.damping * dv - on.stiffness * dp
     db = -on.damping * da - on.stiffness * dv
-    half, third, drift = 0.5 * late, THIRD * late, omega * late
-    c, dc = -on.damping * b - on.stiffness * a, -on.damping * db - on.stiffness * da
+    dc = -on.damping * db - on.stiffness * da
+    drift = omega * late
     ahead = Motion(
-        p + late * (v + half * (a + third * b)), v + late * (a + half * (b + third * c)),
-        dp + late * (dv + half * (da + third * db)), dv + late * (da + half * (db + third * dc)),
+        p + _taylor(late, v, a, b, c), v + _taylor(late, a, b, c), dp + _taylor(late, dv, da, db, dc),
+        dv + _taylor(late, da, db, dc),
         jnp.where(leaves, jnp.where(touching, 0.0, way), now.side),
         cos - drift * (sin + 0.5 * drift * cos), sin + drift * (cos - 0.5 * drift * sin), now.left - u - late,
     )  # fmt: skip
@@ -275,13 +278,24 @@ def _turn(along: Array, across: Array, cos: Array, sin: Array) -> tuple[Array, A
     return along * cos + across * sin, across * cos - along * sin
 
 
-def _miss(gap: Array, v: Array, a: Array, b: Array, way: Array, most: Array) -> Array:
-    """Time from here to where ``gap + v t + a t^2 / 2 + b t^3 / 6`` is zero and the speed has the sign ``way``, no more than
-    ``most``: the parabola's root, then a Newton step."""
+def _taylor(t: Array, *rates: Array) -> Array:
+    """What is gained in a short time, from the rate and its derivatives."""
+    total = rates[-1]
+    for n in range(len(rates) - 1, 0, -1):
+        total = rates[n - 1] + t * total * (1.0 / (n + 1))
+    return t * total
+
+
+def _miss(gap: Array, v: Array, rates: tuple[Array, Array, Array], way: Array, most: Array) -> Array:
+    """Time from here to where the Taylor series of the motion meets the edge and the speed has the sign ``way``, no more than
+    ``most``: the parabola's root, then two steps of Newton's with the slope there, since a motion that grazes has none here."""
+    a, b, _ = rates
     below = v + way * jnp.sqrt(jnp.maximum(v * v - 2.0 * a * gap, 0.0))
-    share = 1.0 / jnp.where(below == 0.0, 1.0, below)
-    late = -2.0 * gap * share
-    late = late - THIRD * b * late * late * late * share
+    late = _within(-2.0 * gap / jnp.where(below == 0.0, 1.0, below), -most, most)
+    slope = v + late * (a + 0.5 * late * b)
+    share = 1.0 / jnp.where(slope == 0.0, 1.0, slope)
+    for _ in range(2):
+        late = late - share * (gap + _taylor(late, v, *rates))
     return _within(late, -most, most)
 
 
@@ -322,13 +336,22 @@ def _first_exit(path: Septic, begin: tuple[Array, ...], end: tuple[Array, ...], 
     away = slope > 0.0
     above, below = jnp.where(away, slope + root, 2.0 * g0), jnp.where(away, -2.0 * curve, root - slope)
     x = last * _within(above / jnp.where(below == 0.0, 1.0, below), 0.0, 1.0)
-    low, high = jnp.zeros_like(x), last
+    # A turning point on the way tells more than the start: the parabola with its top there, through the start of the leg where
+    # the edge lies before it, else through the end.
+    after = (turns | cut) & ~beyond
+    far = jnp.where(after, m - n * top, g0)
+    known = leaves & (far > 0.0) & (after | (beyond & (-g1 < g0)))
+    drop = jnp.sqrt(jnp.where(after, far, -g1) / jnp.where(known, far - g1, 1.0))
+    x = jnp.where(known, jnp.where(after, peak + drop * (last - peak), last * (1.0 - drop)), x)
+    low, high = jnp.where(after, peak, 0.0), last
     for _ in range(HALLEY):
         g, slope, bend = m - n * path.at(x), -n * path.slope(x), -n * path.bend(x)
         low, high = jnp.where(g > 0.0, x, low), jnp.where(g > 0.0, high, x)
         better = x - _halley(g, slope, bend)
         x = jnp.where((better >= low) & (better <= high), better, 0.5 * (low + high))
-    return leaves, grazes, jnp.where(leaves, x, last), n
+    # Where the search has not come near, the leg ends at the last point known to be on the branch, and the next one goes on.
+    lost = leaves & (jnp.abs(g) > LOST) & (low > 0.0)
+    return leaves & ~lost, grazes, jnp.where(lost, low, jnp.where(leaves, x, last)), n
 
 
 def _halley(value: Array, slope: Array, bend: Array) -> Array:
