@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import atexit
 import gc
 import sys
 import warnings
@@ -304,6 +305,7 @@ def main() -> None:
     warnings.showwarning = _plain_warning
     # Much is loaded, most of it stays, and a command ends soon: looking through all of it for garbage is a fifth of the time.
     gc.set_threshold(100_000, 50, 100)
+    atexit.register(gc.freeze)  # nor once more when all of it goes anyway, which took longer than a fit
     if "--help" not in sys.argv[1:]:  # which needs no jax
         from .program import start
 
