@@ -14,6 +14,7 @@ SIGNIFICANT = 0.05
 STEADY = 0.3  # share of neighbours from the same tenth of the record; 0.1 is a steady motion
 GROWS = 10.0  # a difference must grow by e to this over the record, or its growth cannot be told from none
 STAYS = 0.5  # K below which the 0-1 test says regular
+DENIES = 0.2  # K below which it does so against a growth that was measured: a short series with a strong rhythm lies between
 REGULAR_DRIFT = 0.05  # exponents below this per swing are none
 
 
@@ -32,10 +33,10 @@ def judge(
     """Weigh the witnesses.
 
     Chaotic needs all of: the series predicts itself, and better than its surrogates do (p at most 0.05); the exponent's whole
-    interval lies above zero, so far that a difference grows by e^10 over the record; the 0-1 test does not say regular;
-    and the motion is steady, with nearest states from all over the record. Regular: no exponent above zero, and neighbours
-    stay neighbours or the 0-1 test says regular. Stochastic: not predictable, or no more so than linear noise is. Anything
-    else is undecided.
+    interval lies above zero, so far that a difference grows by e^10 over the record; the 0-1 test does not deny it, with a K
+    below 0.2; and the motion is steady, with nearest states from all over the record. Regular: no exponent above zero, and
+    neighbours stay neighbours or the 0-1 test says regular. Stochastic: not predictable, or no more so than linear noise is.
+    Anything else is undecided.
 
     Parameters
     ----------
@@ -59,7 +60,7 @@ def judge(
                 f"The motion changes its nature over the record: {100 * company:.0f} % of nearest states come from the same "
                 "tenth of it, as in a sweep. Take a stretch over which the drive is steady.",
             )
-        if walk.k < STAYS:
+        if walk.k < DENIES:
             return Verdict(
                 "undecided",
                 f"Small differences seem to grow, but the 0-1 test finds regular motion (K = {walk.k:.2f}); a longer record may "
