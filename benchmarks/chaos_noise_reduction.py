@@ -3,9 +3,10 @@
     python -m benchmarks.chaos_noise_reduction [--tiny] [--samples 5000]
 
 Above: gain in dB of the projective and of the paper's simple method against the true series, the projective one's own
-estimate, and Cao's dimension before and after. Below: verdicts on IAAFT surrogates of chaotic series, analysed with noise
-reduction as a user would; "chaotic" should not occur. And what happens to who cleans first and hides it: a projection puts
-structure where none was, which is why no verdict rests on a cleaned series.
+estimate, whether `chaos` would use it (estimated at 1 dB or more), and Cao's dimension before and after. Below: verdicts on
+IAAFT surrogates of chaotic series, analysed with noise reduction as a user would, and cleaned first and passed off as
+measured. "chaotic" should not occur: no verdict rests on a cleaned series, and what is mostly noise is left as it is, since
+a projection would put structure where none was.
 """
 
 from __future__ import annotations
@@ -16,13 +17,14 @@ import numpy as np
 
 from jaxbacklash import chaos
 from jaxbacklash.timeseries import choose_delay, embedding_dimension, iaaft, mean_period
-from jaxbacklash.timeseries.analyse import clean_series
+from jaxbacklash.timeseries.analyse import WORTH_IT_DB, clean_series
 from tests.independent.chaotic import HELD_BACK, HENON, KNOWN, LORENZ, ROSSLER, case_1, with_noise
 
 
 def gains(samples: int, systems: list, shares: tuple[float, ...]) -> None:
     """Print the table of gains."""
-    print(f"{'system':<24}{'noise %':>8}{'found %':>9}{'projective':>12}{'estimated':>11}{'simple':>8}{'dimension':>14}")
+    heads = ("noise %", 8), ("found %", 9), ("projective", 12), ("estimated", 11), ("used", 6), ("simple", 8), ("dimension", 14)
+    print(f"{'system':<24}" + "".join(f"{name:>{width}}" for name, width in heads))
     for system in systems:
         true = system.series(samples, 1, 5)[0]
         true = (true - true.mean()) / true.std()
@@ -34,9 +36,10 @@ def gains(samples: int, systems: list, shares: tuple[float, ...]) -> None:
             decibel = [20.0 * np.log10(share / np.sqrt(np.mean((one.series - true) ** 2))) for one in (projected, averaged)]
             dimensions = [embedding_dimension(one, delay, theiler, rng).cao for one in (noisy, projected.series)]
             estimate = "–" if projected.gain_db is None else f"{projected.gain_db:.1f}"
+            used = "yes" if projected.gain_db is not None and projected.gain_db >= WORTH_IT_DB else "no"
             print(
                 f"{system.name:<24}{100 * share:8.0f}{100 * projected.noise:9.2f}"
-                f"{decibel[0]:12.1f}{estimate:>11}{decibel[1]:8.1f}"
+                f"{decibel[0]:12.1f}{estimate:>11}{used:>6}{decibel[1]:8.1f}"
                 f"{dimensions[0]!s:>8} to {dimensions[1]!s:<3}",
                 flush=True,
             )

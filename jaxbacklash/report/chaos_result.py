@@ -73,7 +73,8 @@ def choices(found: ChaosReport) -> list[tuple[str, str]]:
         used = "the exponent is not from it" if found.conditional else used
         gain = "cannot be told" if found.cleaned.gain_db is None else f"is about {found.cleaned.gain_db:.1f} dB"
         size = f"{100 * found.cleaned.noise:.2g} % of the signal's spread"
-        rows.append(("noise reduction", f"noise of {size}; the gain of taking it off {gain}; {used}"))
+        done = found.cleaned.why_untouched or f"the gain of taking it off {gain}"
+        rows.append(("noise reduction", f"noise of {size}; {done}; {used}"))
     p = found.surrogates
     how = f"{p.count} of kind {p.kind.upper()} over {p.samples} samples with matched ends, seed {found.seed}"
     rows.append(("surrogates", how))

@@ -202,15 +202,20 @@ def _checked(series: np.ndarray, dt: float, count: int, surrogates: str) -> tupl
 
 
 def clean_series(series: np.ndarray, period: float) -> tuple[Cleaned, Cleaned]:
-    """The projective noise reduction and the simple one of the source paper; of a long series, of its middle.
-
-    Vectors span 35 % of a swing for a flow, six samples for a map.
-    """
+    """The projective noise reduction and the simple one of the source paper; of a long series, of its middle."""
     if series.size > CLEANED_SAMPLES:
         begin = (series.size - CLEANED_SAMPLES) // 2
         series = series[begin : begin + CLEANED_SAMPLES]
-    window, delay = (15, max(1, round(SWING_SHARE * period / 14))) if period > FINE else (6, 1)
+    window, delay = vectors(period)
     return projective(series, window=window, delay=delay), simple(series, window=window, delay=delay)
+
+
+def vectors(period: float) -> tuple[int, int]:
+    """Coordinates of the vectors that noise is taken off with, and samples between them.
+
+    They span 35 % of a swing of ``period`` samples for a flow, six samples for a map.
+    """
+    return (15, max(1, round(SWING_SHARE * period / 14))) if period > FINE else (6, 1)
 
 
 def _drive_period(drive: np.ndarray | None, samples: int, dt: float) -> tuple[float | None, str | None]:

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..program import cores
 from .embedding import embed
 
-BLOCK = 2048  # vectors at once
+BLOCK = 512  # vectors at once
 NEIGHBOURS = 40
 ITERATIONS = 3
 ABOVE_FLOOR = 4.0  # a direction belongs to the motion if its local variance exceeds so many times the smallest one's
-GAIN_SAMPLES = 4000  # samples the gain is estimated on
+GAIN_SAMPLES = 4000  # samples that the number of directions is chosen on, and the gain estimated
+NEGLIGIBLE = 1e-3  # share of the standard deviation below which exponents are the same with and without it
+MOSTLY_NOISE = 0.3  # share of the standard deviation from which on neighbours share by chance what is kept of them
 END_WEIGHT = 1e3  # the first and last coordinate of a vector are hardly corrected: errors grow towards them
 
 
@@ -25,7 +29,9 @@ class Cleaned:
     ``series`` (N,); ``removed`` root mean square of what was taken off [unit of the series]; ``noise`` estimated standard
     deviation of the noise it came with [unit of the series]; ``gain_db`` estimated gain in the signal-to-noise ratio of the
     projective method, None where it cannot be told; ``window`` coordinates of the vectors, ``delay`` samples between them,
-    ``kept`` directions that count as motion; ``method`` "projective" or "simple".
+    ``kept`` directions that count as motion; ``method`` "projective" or "simple"; ``why_untouched`` None, or why the series came
+    back as it was: too little noise to matter, or so much that what neighbours have in common is chance, and to keep that alone
+    would make a motion that nobody measured.
     """
 
     series: np.ndarray
@@ -36,6 +42,7 @@ class Cleaned:
     delay: int
     kept: int
     method: str
+    why_untouched: str | None = None
 
 
 def simple(
@@ -61,6 +68,9 @@ def simple(
     middle = (window - 1) // 2 * delay
     present = series.copy()
     noise = _floor(series, window, delay)[0]
+    why = None if radius is not None else _why_untouched(noise, series)
+    if why:
+        return Cleaned(present, 0.0, noise, None, window, delay, 0, "simple", why)
     size = 3.0 * noise if radius is None else radius
     for _ in range(iterations):
         points = embed(present, window, delay)
@@ -101,19 +111,29 @@ def projective(
     Cleaned
     """
     noise, found_kept = _floor(series, window, delay)
-    # The floor hides the weakest direction of the motion, so one more is tried too, and what gains more is taken.
-    trials = (found_kept, found_kept + 1) if kept is None else (kept,)
-    best: Cleaned | None = None
-    for number, directions in enumerate(trials):
+    why = None if kept is not None else _why_untouched(noise, series)
+    if why:
+        return Cleaned(series.copy(), 0.0, noise, None, window, delay, 0, "projective", why)
+    # The floor hides the weakest direction of the motion, so one more is tried too, and what gains more on a part is taken.
+    part, cleaned = series[:GAIN_SAMPLES], {}
+    gains = {}
+    for number, directions in enumerate((found_kept, found_kept + 1) if kept is None else (kept,)):
         if progress is not None:
-            progress("taking noise off", number / len(trials))
-        present = _rounds(series, window, delay, directions, iterations)
-        gain = _gain(present, noise, window, delay, directions, iterations)
-        one = Cleaned(present, _rms(series - present), noise, gain, window, delay, directions, "projective")
-        if best is None or (gain is not None and (best.gain_db is None or gain > best.gain_db)):
-            best = one
-    assert best is not None
-    return best
+            progress("taking noise off", 0.25 * number)
+        cleaned[directions] = _rounds(part, window, delay, directions, iterations)
+        gains[directions] = _gain(cleaned[directions], noise, window, delay, directions, iterations)
+    best = max(gains, key=lambda directions: gains[directions] or 0.0)
+    if progress is not None:
+        progress("taking noise off", 0.5)
+    present = cleaned[best] if part.size == series.size else _rounds(series, window, delay, best, iterations)
+    return Cleaned(present, _rms(series - present), noise, gains[best], window, delay, best, "projective")
+
+
+def _why_untouched(noise: float, series: np.ndarray) -> str | None:
+    share = noise / series.std()
+    if share < NEGLIGIBLE:
+        return "too little to matter, so none is taken off"
+    return "too much to be told from motion, so none is taken off" if share > MOSTLY_NOISE else None
 
 
 def _rounds(series: np.ndarray, window: int, delay: int, kept: int, iterations: int) -> np.ndarray:
@@ -131,9 +151,8 @@ def _gain(cleaned: np.ndarray, noise: float, window: int, delay: int, kept: int,
     """
     if not noise > 0.0:
         return None
-    known = cleaned[:GAIN_SAMPLES]
-    again = known + noise * np.random.default_rng(0).standard_normal(known.size)
-    left = _rms(_rounds(again, window, delay, kept, iterations) - known)
+    again = cleaned + noise * np.random.default_rng(0).standard_normal(cleaned.size)
+    left = _rms(_rounds(again, window, delay, kept, iterations) - cleaned)
     return float(20.0 * np.log10(noise / left)) if left > 0.0 else None
 
 
@@ -149,27 +168,36 @@ def _projected(series: np.ndarray, window: int, delay: int, kept: int) -> np.nda
     # Neighbourhoods of the neighbours' centres, for the curvature of the surface (Kantz and Schreiber, 10.3).
     centres = np.empty_like(points)
     indices = np.empty((len(points), count), dtype=np.int32)
-    for begin in range(0, len(points), BLOCK):
+
+    def look(begin: int) -> None:
         rows = slice(begin, begin + BLOCK)
         indices[rows] = tree.query(points[rows], k=count)[1]
         centres[rows] = points[indices[rows]].mean(axis=1)
+
     weights = np.ones(window)
     weights[[0, -1]] = END_WEIGHT
     root = np.sqrt(weights)
-    correction, times = np.zeros(series.size), np.zeros(series.size)
-    for begin in range(0, len(points), BLOCK):
-        chosen = np.arange(begin, min(begin + BLOCK, len(points)))
-        near = points[indices[chosen]]
-        middle = 2.0 * centres[chosen] - centres[indices[chosen]].mean(axis=1)
+
+    def step(begin: int) -> np.ndarray:
+        rows = slice(begin, begin + BLOCK)
+        near = points[indices[rows]]
+        middle = 2.0 * centres[rows] - centres[indices[rows]].mean(axis=1)
         spread = (near - near.mean(axis=1, keepdims=True)) * root
         _, axes = np.linalg.eigh(spread.transpose(0, 2, 1) @ spread / count)
         out = axes[:, :, : window - kept]  # eigenvalues ascend: the first directions are the noise's
-        off = ((middle - points[chosen]) * root)[:, :, None]
-        step = (out @ (out.transpose(0, 2, 1) @ off))[:, :, 0] / root
-        for place in range(window):
-            at = chosen + place * delay
-            correction[at] += step[:, place] * (1.0 / weights[place])
-            times[at] += 1.0 / weights[place]
+        off = ((middle - points[rows]) * root)[:, :, None]
+        return (out @ (out.transpose(0, 2, 1) @ off))[:, :, 0] / root
+
+    # Searching, multiplying and eigenvectors leave Python free: the cores share the blocks.
+    with ThreadPoolExecutor(cores()) as pool:
+        begins = range(0, len(points), BLOCK)
+        list(pool.map(look, begins))
+        steps = np.concatenate(list(pool.map(step, begins)))
+    correction, times = np.zeros(series.size), np.zeros(series.size)
+    for place in range(window):
+        at = slice(place * delay, place * delay + len(points))
+        correction[at] += steps[:, place] / weights[place]
+        times[at] += 1.0 / weights[place]
     return series + correction / np.maximum(times, 1e-300)
 
 

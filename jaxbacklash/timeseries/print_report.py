@@ -41,11 +41,12 @@ def text(found: ChaosReport) -> str:
         gain = "unknown" if found.cleaned.gain_db is None else f"{found.cleaned.gain_db:.1f} dB"
         use = "used for the exponent" if found.uses_cleaned else "not used: it would gain too little"
         use = "the exponent is not from it" if found.conditional else use
+        use = f"taken off: gain about {gain}, {use}"
+        use = found.cleaned.why_untouched or use
         lines += [
             f"  after noise reduction           {_or_none(found.cleaned_dimension.cao)} by Cao's E1, "
             f"{_or_none(found.cleaned_dimension.false_neighbours)} by false neighbours",
-            f"  noise                           {100 * found.cleaned.noise:.2g} % of the signal; taken off: gain about {gain}, "
-            f"{use}",
+            f"  noise                           {100 * found.cleaned.noise:.2g} % of the signal; {use}",
         ]
     d = found.correlation
     shown = f"{d.dimension:.2f} +- {d.spread:.2f}" if d.dimension is not None else f"none: {d.why}"
