@@ -3,7 +3,7 @@
     python -m benchmarks.chaos_noise_reduction [--tiny] [--samples 5000]
 
 Above: gain in dB of the projective and of the paper's simple method against the true series, the projective one's own
-estimate, whether `chaos` would use it (estimated at 1 dB or more), and Cao's dimension before and after. Below: verdicts on
+estimate, whether `chaos` would use it (estimated at 2 dB or more), and Cao's dimension before and after. Below: verdicts on
 IAAFT surrogates of chaotic series, analysed with noise reduction as a user would, and cleaned first and passed off as
 measured. "chaotic" should not occur: no verdict rests on a cleaned series, and what is mostly noise is left as it is, since
 a projection would put structure where none was.

@@ -211,6 +211,15 @@ def test_correlation_dimension_of_henon(henon):
     assert found.dimension == pytest.approx(1.21, abs=0.1)
 
 
+def test_correlation_dimension_is_read_off_the_plateau_not_off_the_noise(lorenz):
+    """Below it the slopes grow with the embedding, as the noise fills every direction; a line through both is too steep."""
+    found = correlation(with_noise(lorenz, 0.02), range(2, 8), 8, 50, rng())
+    assert found.dimension == pytest.approx(2.05, abs=0.12)
+    assert found.spread > 0.02
+    first = found.radii[found.regions[-1].first]
+    assert first > 3 * 0.02
+
+
 def test_noise_has_no_correlation_dimension():
     found = correlation(rng(8).standard_normal(4000), range(2, 8), 1, 3, rng())
     assert found.dimension is None

@@ -189,8 +189,10 @@ def correlation_sums(found: ChaosReport) -> Figure:
     left.set_ylabel("share of pairs nearer")
     top = 1.2 * (found.correlation.dimensions.max() if one.dimension is None else one.dimension + 1.0)
     right.set(ylabel="local slope", ylim=(0.0, float(top)))
-    if one.dimension is not None:
-        right.axhline(one.dimension, color=MODEL, lw=1.2)
+    if one.dimension is not None and one.spread is not None and one.regions[-1] is not None:
+        first, last = one.radii[[one.regions[-1].first, one.regions[-1].last]]
+        right.fill_between([first, last], one.dimension - one.spread, one.dimension + one.spread, color=MODEL, alpha=0.2, lw=0.0)
+        right.plot([first, last], [one.dimension] * 2, color=MODEL, lw=1.6)
     right.legend(loc="upper right", ncols=2, fontsize=7)
     return figure
 

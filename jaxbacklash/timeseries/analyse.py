@@ -24,7 +24,7 @@ from .zero_one import ZeroOne, zero_one
 
 SHORTEST = 500
 CLEANED_SAMPLES = 20000  # of a longer series the middle is cleaned
-WORTH_IT_DB = 1.0
+WORTH_IT_DB = 2.0  # the gain is estimated to 2.5 dB (benchmarks.chaos_noise_reduction)
 FINE = 8.0  # samples a swing from which on a series counts as a flow's
 SWING_SHARE = 0.35  # of a swing that the noise reduction's vectors span
 

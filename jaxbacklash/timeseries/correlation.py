@@ -9,21 +9,23 @@ from scipy.spatial import cKDTree
 
 from .embedding import embed
 from .neighbours import references
-from .region import Region, straight_part
+from .region import POINTS, Region
 
 REFERENCES = 600
 TARGETS = 20000
 RADII = 40
 LEAST_RISE = 1.5  # of log C: a factor of 4.5 in pairs
 LEAST_PAIRS = 30
+FLAT = (0.05, 0.10, 0.15)  # rms of the local slopes about their mean, as a share of it
+GROWS = 0.10  # of the mean slope, over the three largest embeddings
 LARGEST = 0.15  # pairs beyond this share feel the attractor's size
 
 
 @dataclass(frozen=True, eq=False)
 class Correlation:
-    """Correlation sums ``sums`` (M, R) at ``radii`` (R,) [standard deviations] in ``dimensions`` (M,), ``regions`` (M,) their
-    straight parts, and ``dimension`` the correlation dimension with its ``spread`` over the larger embeddings; None with ``why``
-    where no scaling region exists or the slope keeps growing with the embedding."""
+    """Correlation sums ``sums`` (M, R) at ``radii`` (R,) [standard deviations] in ``dimensions`` (M,), ``regions`` (M,) the
+    lines through the plateau of the larger ones, and ``dimension`` the correlation dimension with the ``spread`` of the slopes on
+    it; None with ``why`` where there is no plateau, as where the slope keeps growing with the embedding."""
 
     dimensions: np.ndarray
     radii: np.ndarray
@@ -40,7 +42,8 @@ def correlation(
     """Correlation sums in several embeddings and the dimension they agree on.
 
     Counts pairs through two trees, never all pairs one by one, and takes off those within the Theiler window (Theiler,
-    1986). The dimension is the mean slope of the straight parts in the three largest embeddings if they agree within 15 %.
+    1986). The dimension is the mean local slope of the three largest embeddings where it is flat and they agree; its ``spread``
+    is how far the slopes there lie apart (rms).
 
     Parameters
     ----------
@@ -50,7 +53,7 @@ def correlation(
     rng : chooses reference points, and targets of a series with more than `TARGETS`
     """
     radii = np.geomspace(0.005, 3.0, RADII)
-    sums, regions, used = [], [], []
+    sums, told, used = [], [], []
     for m in dimensions:
         points = embed(series, m, delay)
         if len(points) < 4 * theiler + 200:
@@ -63,25 +66,55 @@ def correlation(
         share = np.maximum(counts - close, 0.0) / pairs
         sums.append(share)
         used.append(m)
-        inside = np.flatnonzero((share * pairs > LEAST_PAIRS) & (share < LARGEST))
-        region = None
-        if inside.size >= 5:
-            region = straight_part(np.log(radii[inside]), np.log(share[inside]), LEAST_RISE)
-        if region is not None:
-            first = int(inside[0])
-            region = Region(region.first + first, region.last + first, region.slope, region.intercept)
-        regions.append(region)
-    slopes = [region.slope for region in regions[-3:] if region is not None]
-    value = spread = None
-    if len(slopes) < 2:
-        why = "the correlation sums have no straight part"
-    else:
-        value, spread = float(np.mean(slopes)), float(np.std(slopes))
-        why = ""
-        if max(slopes) - min(slopes) > 0.15 * value:
-            why = f"the slope grows with the embedding, from {slopes[0]:.2f} to {slopes[-1]:.2f}: it is no dimension"
-            value = spread = None
-    return Correlation(np.array(used), radii, np.array(sums), tuple(regions), value, spread, why)
+        told.append((share * pairs > LEAST_PAIRS) & (share < LARGEST))
+    regions, value, spread, why = _plateau(np.log(radii), np.array(sums), np.array(told))
+    return Correlation(np.array(used), radii, np.array(sums), regions, value, spread, why)
+
+
+def _plateau(
+    log_radii: np.ndarray, sums: np.ndarray, told: np.ndarray
+) -> tuple[tuple[Region | None, ...], float | None, float | None, str]:
+    """The radii over which the slopes are flat and the larger embeddings agree, and what they say.
+
+    Of all stretches of at least five radii over which each of the three largest sums rises by `LEAST_RISE`, the one with the
+    largest rise whose local slopes, all three sums together, keep to their mean within 5 % (rms), else 10, else 15 %. Where the
+    mean slope changes by more than a tenth from the smallest embedding of the three to the largest there is no dimension.
+    """
+    none: tuple[Region | None, ...] = (None,) * len(sums)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        logs = np.log(sums)
+        local = np.gradient(logs, log_radii, axis=1) if len(sums) else logs
+    last = slice(max(0, len(sums) - 3), len(sums))
+    inside = np.flatnonzero(np.all(told[last], axis=0)) if len(sums) > 1 else np.array([], dtype=int)
+    # A slope at the rim looks at a neighbour outside.
+    inside = inside[1:-1]
+    stretches = [
+        (first, end) for k, first in enumerate(inside) for end in inside[k + POINTS - 1 :]
+        if np.min(logs[last, end] - logs[last, first]) >= LEAST_RISE
+    ]  # fmt: skip
+    if not stretches:
+        return none, None, None, "the correlation sums have no straight part"
+    rises = np.array([np.mean(logs[last, end] - logs[last, first]) for first, end in stretches])
+    parts = [local[last, first : end + 1] for first, end in stretches]
+    means, unlike = np.array([part.mean() for part in parts]), np.array([part.std() for part in parts])
+    grows = np.array([np.ptp(part.mean(axis=1)) for part in parts])
+    for share in FLAT:
+        flat = (unlike <= share * means) & (grows <= GROWS * means)
+        if flat.any():
+            first, end = stretches[int(np.argmax(np.where(flat, rises, -np.inf)))]
+            part = local[last, first : end + 1]
+            lines = tuple(_line(log_radii, one, first, end) for one in logs[last])
+            return none[len(lines) :] + lines, float(part.mean()), float(part.std()), ""
+    ends = parts[int(np.argmin(unlike / means))].mean(axis=1)
+    why = f"the slope does not settle: from {ends[0]:.2f} to {ends[-1]:.2f} with the embedding"
+    return none, None, None, why
+
+
+def _line(log_radii: np.ndarray, logs: np.ndarray, first: int, end: int) -> Region:
+    """The line through one sum over the plateau."""
+    rows = slice(first, end + 1)
+    slope, intercept = np.polyfit(log_radii[rows], logs[rows], 1)
+    return Region(int(first), int(end), float(slope), float(intercept))
 
 
 def _close_in_time(
