@@ -92,6 +92,7 @@ def test_a_leg_ends_on_the_edge_however_it_gets_there(damping):
 
 def test_a_cell_that_grazes_has_the_exponent_of_an_independent_program():
     """At 1/alpha = 2.244 a motion of six periods leaves a contact slowly and turns back just inside the play."""
+    pytest.importorskip("numba", reason="the Taylor series need numba")
     cell, start = exponents.Cell(2.2441471571906355, 0.02), (0.49946405, 0.09593101)
     _, growth, _ = taylor.follow(cell, 300, start)
     system, drive = PaperCase(1).build({"inverse_alpha": np.array([cell.inverse_alpha])})
