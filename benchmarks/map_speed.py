@@ -137,6 +137,13 @@ def beside_c(grids: list[np.ndarray], start: np.ndarray, plan: Plan, ours: float
         print("  to whom that is enough, that row is the honest rival")
 
 
+def against(spent: float, ours: float) -> str:
+    """A peer's time with 128 steps, and what that is to ours: as it is, and with the steps of the C program's last row."""
+    more = STEPS[-1] / 128
+    as_many = f"with {STEPS[-1]} steps, as wrong as C there, {more * spent / ours:.0f} times"
+    return f"{spent:.2f} s, {spent / ours:.1f} times ours; {as_many}"
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--tiny", action="store_true", help="few cells, few periods")
@@ -182,11 +189,11 @@ def main() -> None:
     few = [g[:: max(1, cells // 2048)] for g in grids]
     numba_map(*few, 2, 1, 128)
     spent, _ = fastest(lambda: numba_map(*few, periods, skip, 128), rounds)
-    print(f"\nnumba, 128 steps: {spent * cells / len(few[0]):.2f} s (from {len(few[0])} cells)")
+    print(f"\nnumba, 128 steps: {against(spent * cells / len(few[0]), ours)} (from {len(few[0])} cells)")
     by_diffrax, short = map_peers.diffrax_program(), max(4, periods // 20)
     jax.block_until_ready(by_diffrax(*grids, periods=short, skip=1, steps=128))
     spent, _ = timed(lambda: jax.block_until_ready(by_diffrax(*grids, periods=short, skip=1, steps=128)))
-    print(f"diffrax, one step a solver step, Tsit5, 128 steps: {spent * periods / short:.1f} s (from {short} periods)")
+    print(f"diffrax, one step a solver step, Tsit5, 128 steps: {against(spent * periods / short, ours)} (from {short} periods)")
     few_cells = [exponents.Cell(float(a), float(z)) for a, z in zip(*(g[:: cells // 3] for g in grids))]
     spent, _ = timed(lambda: [exponents.follow(cell, 4, 1, rtol=1e-9) for cell in few_cells])
     print(f"scipy with events: {spent / len(few_cells) / 4 * cells * periods:.0f} s (from {len(few_cells)} cells and 4 periods)")
