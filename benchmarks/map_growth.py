@@ -38,7 +38,7 @@ def one(rows: int, columns: int, periods: int, folder: str) -> None:
 
     jb.start()
     from jaxbacklash.dynamics.family import PaperCase
-    from jaxbacklash.dynamics.follow import compile_exact
+    from jaxbacklash.dynamics.follow import trace_exact
     from jaxbacklash.dynamics.labels import write_netcdf
     from jaxbacklash.dynamics.maps import request, run_map
 
@@ -47,7 +47,7 @@ def one(rows: int, columns: int, periods: int, folder: str) -> None:
     # A map of four cells first: what writes and reads the files is loaded when it is first asked for, and is no growth.
     few = request(PaperCase(1), {name: values[:2] for name, values in axes.items()}, periods=24, skip=2, samples=1)
     write_netcdf(run_map(few, store=f"{folder}/few"), f"{folder}/few.nc")
-    compile_exact(int(np.prod(wanted.tile)), wanted.plan)
+    trace_exact(int(np.prod(wanted.tile)), wanted.plan)()
     before = memory("VmRSS")
     begun = time.perf_counter()
     write_netcdf(run_map(wanted, store=f"{folder}/tiles"), f"{folder}/map.nc")

@@ -14,8 +14,8 @@ import numpy as np
 
 from .. import __version__
 from ..dynamics.family import CASES, PaperCase
-from ..dynamics.follow import compile_exact
-from ..dynamics.labels import need_xarray, write_netcdf
+from ..dynamics.follow import trace_exact
+from ..dynamics.labels import need_dask_array, need_h5netcdf, need_xarray, write_netcdf
 from ..dynamics.maps import Request, request, run_map
 from ..dynamics.tiles import need_zarr
 from ..errors import BadInput
@@ -43,13 +43,13 @@ def run(
     store = out.with_name(out.name + ".tiles")
     ready = time.perf_counter()
     start_up = process_age() or ready - begun
-    with progress(as_json) as tell:
+    with progress(as_json) as tell, ThreadPoolExecutor(1) as aside:
         tell("compiling", 0.0)
-        compile_beside_imports(wanted)
+        compile_beside_imports(wanted, aside)
         compiled = time.perf_counter()
         map_ = run_map(wanted, store=store, progress=tell)
-        write_netcdf(map_, out)
         computed = time.perf_counter()
+        writing = aside.submit(write_netcdf, map_, out)
         # All but the samples, of which the page shows one cut: a large map's would not fit.
         map_ = map_.drop_vars("poincare").load().assign(poincare=map_["poincare"])
         result: dict[str, Any] = {
@@ -63,6 +63,7 @@ def run(
         }  # fmt: skip
         tell("drawing", 1.0)
         picture(map_, result, out)
+        writing.result()
         shutil.rmtree(store)
     if as_json:
         sys.stdout.write(json_text(result))
@@ -71,14 +72,17 @@ def run(
         print(f"written: {out}, {out.with_suffix('.html').name}, {out.with_suffix('.png').name}")
 
 
-def compile_beside_imports(wanted: Request) -> None:
-    """Compile the map's program while the libraries that keep and draw it are loaded: the compiler leaves Python free."""
-    with ThreadPoolExecutor(1) as pool:
-        compiling = pool.submit(compile_exact, int(np.prod(wanted.tile)), wanted.plan)
-        need_xarray()
-        need_zarr()
-        from ..report import map_report as map_report
-        compiling.result()
+def compile_beside_imports(wanted: Request, aside: ThreadPoolExecutor) -> None:
+    """Compile the map's program while the libraries that keep and draw it are loaded: the compiler leaves Python free.
+
+    Tracing does not, so it comes first.
+    """
+    compile_exact = trace_exact(int(np.prod(wanted.tile)), wanted.plan)
+    compiling = aside.submit(compile_exact)
+    for need in (need_zarr, need_dask_array, need_xarray, need_h5netcdf):
+        need()
+    from ..report import map_report as map_report
+    compiling.result()
 
 
 def read_request(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -172,11 +173,13 @@ def _solve(term: Any, solver: Any, args: Any, period: Array, p0: Array, v0: Arra
     return summary(plan, period, p, v, growth, unresolved[-1] > 0.0)
 
 
-def compile_exact(lanes: int, plan: Plan) -> None:
-    """Compile `follow_exact` for so many lanes by a run that is over at once."""
+def trace_exact(lanes: int, plan: Plan) -> Callable[[], Any]:
+    """Trace `follow_exact` for so many lanes; what is returned compiles it, by a run that is over at once."""
     one = np.ones(lanes)
     pieces = LinearPieces(*(one * number for number in (0.1, 0.0, 0.0, 1.0, 0.0, 0.1, 1.0)))
-    jax.block_until_ready(follow_exact(pieces, 0.0 * one, 0.0 * one, 0.0 * one, 1e-6 * plan.stops, plan))
+    given = pieces, 0.0 * one, 0.0 * one, 0.0 * one, 1e-6 * plan.stops
+    follow_exact.trace(*given, plan).lower()
+    return lambda: jax.block_until_ready(follow_exact(*given, plan))
 
 
 def _kept(t: Any, y: Phase, args: Any) -> tuple[Array, Array, Array, Array]:

@@ -32,6 +32,24 @@ def need_xarray() -> Any:
     return xarray
 
 
+def need_h5netcdf() -> Any:
+    """The library that writes netCDF, or one sentence about how to get it."""
+    try:
+        import h5netcdf
+    except ImportError:
+        raise BadInput('writing netCDF needs h5netcdf, which is not installed: pip install "jaxbacklash[sweep]"') from None
+    return h5netcdf
+
+
+def need_dask_array() -> Any:
+    """The library that reads a store piece by piece, or one sentence about how to get it."""
+    try:
+        import dask.array
+    except ImportError:
+        raise BadInput('reading a store needs dask, which is not installed: pip install "jaxbacklash[sweep]"') from None
+    return dask.array
+
+
 def dataset(wanted: Request, kept: MemoryTiles) -> Any:
     """A map in memory as a Dataset."""
     return _labelled(wanted, kept.arrays, kept.solvers)
@@ -39,10 +57,7 @@ def dataset(wanted: Request, kept: MemoryTiles) -> Any:
 
 def dataset_from_store(wanted: Request, kept: TileStore) -> Any:
     """A map in a store as a Dataset whose arrays are read from the tiles when they are needed."""
-    try:
-        import dask.array as da
-    except ImportError:
-        raise BadInput('reading a store needs dask, which is not installed: pip install "jaxbacklash[sweep]"') from None
+    da = need_dask_array()
     # Names of our own: dask's would depend on the folder, and with them the order in which a file is written.
     lazy = {name: da.from_array(part, chunks=part.chunks, name=f"map-{name}") for name, part in kept.arrays.items()}
     return _labelled(wanted, lazy, kept.solvers)
@@ -86,10 +101,7 @@ def write_netcdf(map_: Any, path: str | os.PathLike[str]) -> None:
     BadInput
         h5netcdf is missing or the file cannot be written.
     """
-    try:
-        import h5netcdf
-    except ImportError:
-        raise BadInput('writing netCDF needs h5netcdf, which is not installed: pip install "jaxbacklash[sweep]"') from None
+    h5netcdf = need_h5netcdf()
     target = Path(path)
     part = target.with_name(target.name + ".part")
     try:
