@@ -3,9 +3,9 @@
     python -m benchmarks.map_growth [--tiny] [--largest 1024] [--rounds 3]
 
 Every size runs in a fresh process with a store of tiles and a netCDF written from it, so that its peak memory is its own. The
-time is that of the run and the file, after compiling; the shorter of ``--rounds`` runs counts. A map of fewer tiles than
-cores leaves cores idle, so time is told as core-seconds: seconds times the cores that had a tile. Straight growth: no size is
-more than 20 per cent off the straight line through all of them, whose constant is what a map costs however small. Memory:
+time is that of the run and the file, after compiling, by the clock; the shortest of ``--rounds`` runs counts. Straight growth:
+no size is more than 20 per cent off the straight line through all of them, whose constant is what a map costs however small.
+A map of fewer tiles than cores leaves cores idle, which the table shows. Memory:
 twice the cells may cost no more than twice the memory and 20 per cent, and the largest map stays below `MEMORY`, whatever its
 file holds. Two quiet cores need four to six minutes; the machine should do nothing else.
 """
@@ -95,14 +95,14 @@ def table(head: str, sizes: list[tuple[int, int, int]], rounds: int) -> list[dic
     for shape in sizes:
         found, work = fresh(*shape, rounds), float(np.prod(shape))
         rows.append(found | {"work": work})
-        each = 1e9 * found["s"] * found["cores"] / work
+        each = 1e9 * found["s"] / work
         told = f"{found['s']:9.2f}{found['cores']:7.0f}{each:23.0f}{found['MB']:12.0f}"
         print(f"  {shape[0] * shape[1]:9d}{shape[2]:9d}{told}", flush=True)
     if len(rows) > 2:
         work, spent = (np.array([row[k] for row in rows]) for k in ("work", "s"))
-        constant, slope, misfit = straight(work, spent * np.array([row["cores"] for row in rows]))
+        constant, slope, misfit = straight(work, spent)
         worst = float(np.abs(misfit).max())
-        print(f"  core-seconds: {constant:.2f} s and {1e9 * slope:.0f} ns a cell and period; off it by {100 * worst:.0f} % "
+        print(f"  seconds: {constant:.2f} s and {1e9 * slope:.0f} ns a cell and period; off it by {100 * worst:.0f} % "
               f"at most (wanted 20 %): {verdict(worst <= ROOM)}")  # fmt: skip
         faster = growth(np.array([row["MB"] for row in rows]), work)
         print(f"  memory grows {faster:.2f} times as fast as the size at most (wanted 1.2): {verdict(faster <= 1.0 + ROOM)}")

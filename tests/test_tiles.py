@@ -50,6 +50,20 @@ def test_a_store_holds_the_bits_of_the_map_in_memory(whole, tmp_path):
     assert same(whole, run_map(small(), store=tmp_path / "store"))
 
 
+@pytest.mark.parametrize("room", [1, 30, 100, 10_000])
+def test_a_store_goes_into_its_file_some_chunks_at_a_time(tmp_path, monkeypatch, room):
+    import xarray
+
+    from jaxbacklash.dynamics import labels
+
+    pytest.importorskip("h5netcdf")
+    monkeypatch.setattr(labels, "ROOM", room)
+    stored = run_map(small(lanes=8), store=tmp_path / "store")
+    write_netcdf(stored, tmp_path / "map.nc")
+    with xarray.open_dataset(tmp_path / "map.nc", engine="h5netcdf") as found:
+        assert same(stored, found)
+
+
 def test_tiles_do_not_depend_on_their_size_beyond_rounding(whole):
     other = run_map(small(lanes=7))
     np.testing.assert_allclose(other.lyapunov.values, whole.lyapunov.values, atol=0.05)

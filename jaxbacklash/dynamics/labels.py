@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from itertools import product
+from itertools import pairwise, product
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +14,8 @@ from .maps import KEPT, Request, package_version
 from .periodicity import CHAOTIC, UNRESOLVED
 from .tiles import MemoryTiles, TileStore
 
+ROOM = 2**20
+"""Numbers that are read from a store at once: asking costs as much as reading a few chunks."""
 ABOUT = {
     "lyapunov": ("largest Lyapunov exponent", "1/{time}"),
     "lyapunov_stderr": ("standard error of the exponent, from batch means", "1/{time}"),
@@ -94,7 +96,7 @@ def _labelled(wanted: Request, arrays: dict[str, Any], solvers: set[str]) -> Any
 def write_netcdf(map_: Any, path: str | os.PathLike[str]) -> None:
     """Write a map whole or not at all, and the same map always as the same bytes.
 
-    A map from a store goes over chunk by chunk, in order, so that no more than a tile is in memory.
+    A map from a store goes over in order, some chunks at a time, so that no more than `ROOM` numbers are in memory.
 
     Raises
     ------
@@ -127,6 +129,18 @@ def _write_variable(file: Any, name: str, variable: Any) -> None:
         written[...] = variable.values
         return
     edges = [np.concatenate([[0], np.cumsum(parts)]) for parts in chunks]
-    for box in product(*(range(len(parts)) for parts in chunks)):
-        where = tuple(slice(int(e[k]), int(e[k + 1])) for e, k in zip(edges, box))
+    # Every so many edges, and the last one.
+    stops = [[*e[:-1:step], e[-1]] for e, step in zip(edges, _together(chunks))]
+    for box in product(*(pairwise(e) for e in stops)):
+        where = tuple(slice(int(begin), int(end)) for begin, end in box)
         written[where] = np.asarray(variable.data[where])
+
+
+def _together(chunks: tuple[tuple[int, ...], ...]) -> list[int]:
+    """How many chunks along each dimension are read at once: whole rows of chunks, as far as `ROOM` goes."""
+    room = max(1, ROOM // int(np.prod([parts[0] for parts in chunks])))
+    steps: list[int] = []
+    for parts in reversed(chunks):
+        steps.insert(0, min(len(parts), room))
+        room = max(1, room // steps[0])
+    return steps
