@@ -61,7 +61,11 @@ def dataset_from_store(wanted: Request, kept: TileStore) -> Any:
     """A map in a store as a Dataset whose arrays are read from the tiles when they are needed."""
     da = need_dask_array()
     # Names of our own: dask's would depend on the folder, and with them the order in which a file is written.
-    lazy = {name: da.from_array(part, chunks=part.chunks, name=f"map-{name}") for name, part in kept.arrays.items()}
+    # Told what it will find, dask need not read the store to learn it.
+    lazy = {
+        name: da.from_array(part, chunks=part.chunks, name=f"map-{name}", meta=np.empty((0,) * part.ndim, part.dtype))
+        for name, part in kept.arrays.items()
+    }
     return _labelled(wanted, lazy, kept.solvers)
 
 
