@@ -49,6 +49,13 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def on_cpu() -> bool:
+    """Whether the processor computes, not an accelerator beside it."""
+    import jax
+
+    return jax.default_backend() == "cpu"
+
+
 def start(*, cache: bool = True, devices: int | None = None, brief: bool = False) -> None:
     """Switch to double precision, ask for wide vectors and one device a core, and keep compiled programs for the next run.
 

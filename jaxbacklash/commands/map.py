@@ -49,20 +49,20 @@ def run(
         compiled = time.perf_counter()
         map_ = run_map(wanted, store=store, progress=tell)
         computed = time.perf_counter()
-        writing = aside.submit(write_netcdf, map_, out)
         # All but the samples, of which the page shows one cut: a large map's would not fit.
-        map_ = map_.drop_vars("poincare").load().assign(poincare=map_["poincare"])
+        drawn = map_.drop_vars("poincare").load().assign(poincare=map_["poincare"])
+        writing = aside.submit(write_netcdf, map_, out)
         result: dict[str, Any] = {
             "schema": 1, "command": "map", "version": __version__, "case": case, "cells": wanted.cells, "periods": periods,
             "skip": skip, "axes": {name: [values[0], values[-1], len(values)] for name, values in wanted.axes},
-            "solver": map_.attrs["solver"], **counts(map_), "out": str(out),
+            "solver": map_.attrs["solver"], **counts(drawn), "out": str(out),
             "wall_s": {
                 "start_up": round(start_up, 3), "compile": round(compiled - ready, 3),
                 "run": round(computed - compiled, 3),
             },
         }  # fmt: skip
         tell("drawing", 1.0)
-        picture(map_, result, out)
+        picture(drawn, result, out)
         writing.result()
         shutil.rmtree(store)
     if as_json:

@@ -15,6 +15,7 @@ import numpy as np
 from ..errors import BadInput
 from ..excitation import AbstractExcitation, Harmonic
 from ..precision import require_double_precision
+from ..program import on_cpu
 from ..solvers.exact_courses import Along, Course, ExactCourse, Joint
 from ..solvers.exact_periods import ExactPeriods, Phase, Pieces, begin
 from ..solvers.linear_pieces import LinearPieces
@@ -121,13 +122,9 @@ def follow_exact(pieces: LinearPieces, phase: Array, p0: Array, v0: Array, stops
 
     On a CPU one block of lanes runs to its end before the next begins; elsewhere all run together.
     """
-    given = pieces, phase, p0, v0, stops
-    if p0.shape[0] <= BLOCK:
-        return _follow_block(*given, plan)
-    found: Followed = jax.lax.platform_dependent(
-        *given, cpu=partial(_block_by_block, plan=plan), default=partial(_follow_block, plan=plan)
-    )
-    return found
+    together = BLOCK if on_cpu() else p0.shape[0]
+    run = _block_by_block if together < p0.shape[0] else _follow_block
+    return run(pieces, phase, p0, v0, stops, plan)
 
 
 def _block_by_block(pieces: LinearPieces, phase: Array, p0: Array, v0: Array, stops: Array, plan: Plan) -> Followed:

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import equinox as eqx
@@ -366,6 +367,7 @@ def _within(x: Array, low: Any, high: Any) -> Array:
     return jnp.where(x < high, x, high)
 
 
+@partial(jax.jit, inline=True)  # diffrax traces a step twice
 def travel(system: LinearPieces, now: Motion, most: Array) -> Motion:
     """Legs until no lane has time left, or ``most`` legs are spent."""
     play, contact = branches(system)
