@@ -24,8 +24,9 @@ from ..fitting import Fit
 from ..fitting.fit import SCORE_WINDOW, prepare
 from ..fitting.setup import first_guess, free_names, make_problem
 from ..fitting.shooting import Problem, Trajectory, Unknowns
-from ..mechanics import Drive, Instant
+from ..mechanics import Instant
 from ..parameters import unit_text, values, with_values
+from ..pointwise import along
 from ..precision import require_double_precision
 from ..records import Record
 from ..system import System
@@ -164,7 +165,8 @@ def _smooth(
     point, found, converged = _search(smoother, Point(start, jnp.zeros((w.count, nodes))))
     spread, loose, path = finish(smoother, point, found.best[0].astype(int), found.best[1])
     names = list(values(system))
-    here = with_values(system, dict(zip(names, np.asarray(problem.parameters(point.unknowns.theta)))))
+    vector = np.asarray(problem.base) + np.asarray(problem.directions) @ np.asarray(point.unknowns.theta)
+    here = with_values(system, dict(zip(names, vector)))
     errors = np.asarray(loose) * np.sum(np.asarray(problem.directions), axis=0)
     before, after = values(system), values(here)
     columns = _along(here, records, scale * np.asarray(point.torque), scale * np.asarray(spread), path)
@@ -191,7 +193,7 @@ def _search(smoother: Smoother, at: Point) -> tuple[Point, Improved, bool]:
     orders = jnp.asarray(np.repeat([1, 2], WIDE.size))
 
     def total(seen: Improved, prior: np.ndarray) -> float:
-        return float(seen.cost) + 0.5 * float(np.exp(prior[1]) * seen.rough[int(prior[0])])
+        return float(seen.cost) + 0.5 * float(np.exp(prior[1]) * np.asarray(seen.rough)[int(prior[0])])
 
     sizes = np.tile(WIDE, 2)
     before: tuple[Point, Improved] | None = None
@@ -255,5 +257,4 @@ def record_rows(records: tuple[Record, ...], samples: int) -> list[slice]:
 
 def moments(system: System, t: Any, y: Any, dy: Any, x: Any, dx: Any) -> Instant:
     """What effects see along a motion, arrays of one shape."""
-    hidden = tuple(jnp.zeros_like(y) for _ in system.state_names[2:])
-    return system.instant(jnp.asarray(t), (jnp.asarray(y), jnp.asarray(dy), *hidden), Drive(x, dx, 0.0 * x))
+    return along(system, t, y, dy, x, dx).now

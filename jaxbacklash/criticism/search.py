@@ -366,7 +366,7 @@ class Search:
             tried = self.memories(current, ranking)
         for c in telling:
             enough = tried and min(t.misfit for t in tried.values()) < NOISE_FLOOR
-            if enough and any(self.bench.laws[n].states for n in tried):
+            if enough and any(self.bench.laws[n].states and gain(current, t) > demanded(self.bench) for n, t in tried.items()):
                 break  # it was ahead of every static one before it was fitted
             if c.gain < (CLOSE if enough else HOPEFUL) * telling[0].gain:
                 continue

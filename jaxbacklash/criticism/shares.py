@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Any
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 
-from ..mechanics import Drive
+from ..compiled import kept_jit
 from ..parameters import unravel, values, with_values
+from ..pointwise import padded, torques
 from ..system import System
 from .latent import Latent
 
@@ -57,35 +57,42 @@ def plainest(
     return table - columns @ amount, covariance, theta + (alike.T @ amount) / size
 
 
-def _given(latent: Latent) -> Callable[[jax.Array], jax.Array]:
-    """What the model gives along the motion (N,), its torque less what its inertia takes, as a function of its free
-    parameters in the problem's units; only differences of it mean something."""
-    problem = latent.inside.smoother.problem
-    zero = jnp.zeros(latent.t.size)
-    drive = Drive(jnp.asarray(latent.x), jnp.asarray(latent.dx), zero)
-    y, dy, t = jnp.asarray(latent.y), jnp.asarray(latent.dy), jnp.asarray(latent.t)
+def _moved(latent: Latent) -> tuple[np.ndarray, ...]:
+    """The smoothed motion: t, y, dy, x, dx, no force, and the link's acceleration, (N,) each."""
     parts = [latent.record == number for number in np.unique(latent.record)]
-    ddy = jnp.asarray(np.concatenate([np.gradient(latent.dy[rows], latent.t[rows]) for rows in parts]))
+    ddy = np.concatenate([np.gradient(latent.dy[rows], latent.t[rows]) for rows in parts])
+    return latent.t, latent.y, latent.dy, latent.x, latent.dx, np.zeros(latent.t.size), ddy
 
-    def given(theta: jax.Array) -> jax.Array:
-        system = unravel(latent.system, problem.parameters(theta))
-        state = (y, dy, *(zero for _ in system.state_names[2:]))
-        return system.torques(system.instant(t, state, drive), state)[0] - system.inertia * ddy
 
-    return given
+@kept_jit
+def _given(system: System, vector: Any, rows: Any) -> Any:
+    """What the model gives along a motion (N,), its torque less what its inertia takes, at a vector of its parameters; only
+    differences of it mean something."""
+    known = unravel(system, vector)
+    return torques(known, rows[:-1])[1] - known.inertia * rows[-1]
+
+
+@kept_jit
+def _slopes(system: System, base: Any, directions: Any, theta: Any, rows: Any) -> Any:
+    return jax.jacfwd(lambda theta: _given(system, base + directions @ theta, rows))(theta)
 
 
 def slopes_along(latent: Latent, theta: np.ndarray) -> np.ndarray:
     """How the model's torque changes with its parameters, (N, q)."""
-    return np.asarray(jax.jit(jax.jacfwd(_given(latent)))(jnp.asarray(theta)))
+    problem = latent.inside.smoother.problem
+    rows = tuple(padded(row) for row in _moved(latent))
+    slopes = _slopes(latent.system, problem.base, problem.directions, np.asarray(theta), rows)
+    return np.asarray(slopes)[: latent.t.size]
 
 
 def torque_with(latent: Latent, theta: np.ndarray) -> tuple[System, np.ndarray]:
     """The system at other parameters, and the torque missing from it (N,): what one system gives less the other lacks."""
-    given, problem = _given(latent), latent.inside.smoother.problem
-    change = np.asarray(given(latent.inside.point.unknowns.theta) - given(jnp.asarray(theta)))
-    vector = np.asarray(problem.parameters(jnp.asarray(theta)))
-    return with_values(latent.system, dict(zip(values(latent.system), vector))), latent.torque + change
+    problem, rows = latent.inside.smoother.problem, tuple(padded(row) for row in _moved(latent))
+    base, directions = np.asarray(problem.base), np.asarray(problem.directions)
+    here, there = (base + directions @ np.asarray(at) for at in (latent.inside.point.unknowns.theta, theta))
+    change = (np.asarray(_given(latent.system, vector, rows))[: latent.t.size] for vector in (here, there))
+    missing = latent.torque + next(change) - next(change)
+    return with_values(latent.system, dict(zip(values(latent.system), there))), missing
 
 
 def weights(latent: Latent, torque: np.ndarray) -> np.ndarray:

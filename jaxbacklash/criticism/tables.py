@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import solveh_banded
 
-from ..effects.learned import basis
+from ..compiled import kept_jit
+from ..effects.learned import basis_at, coordinate
 from ..mechanics import Instant
+from ..pointwise import padded
 from .latent import Latent, moments, record_rows
 
 
@@ -55,9 +57,19 @@ def basis_at_nodes(
     windows, per = latent.inside.path.times.shape
     found = np.zeros((windows, nodes, int(np.prod([len(row) for row in knots]))))
     for rows, now in motions:
-        along = np.asarray(basis(names, knots, now))
+        along = basis_along(names, knots, now)
         found[rows] = _project(along, per / nodes, (rows.stop - rows.start) * nodes).reshape(-1, *found.shape[1:])
     return found
+
+
+def basis_along(names: tuple[str, ...], knots: tuple[tuple[float, ...], ...], now: Instant) -> np.ndarray:
+    """The table's basis at many moments (N,), (N, R)."""
+    values = [np.asarray(coordinate(name, now)) for name in names]
+    filled = _basis(tuple(padded(value) for value in values), tuple(np.asarray(row) for row in knots))
+    return np.asarray(filled)[: values[0].shape[0]]
+
+
+_basis = kept_jit(basis_at)
 
 
 def _project(along: np.ndarray, spacing: float, count: int) -> np.ndarray:

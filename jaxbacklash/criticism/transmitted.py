@@ -13,7 +13,6 @@ import jax
 import numpy as np
 from scipy import linalg
 
-from ..effects.learned import basis
 from ..fitting import Fit
 from ..fitting.shooting import Problem, Unknowns, local_coefficients, trajectory
 from ..mechanics import Drive
@@ -21,7 +20,7 @@ from ..parameters import unit_text
 from .latent import MOTION, NODES, Latent, moments, record_rows
 from .shares import out_of_sample, weights
 from .surface import SETS, Surface
-from .tables import choose_knots, smoothness, varies
+from .tables import basis_along, choose_knots, smoothness, varies
 
 CLEARLY = 0.7
 """Two coordinates instead of one only if they leave less than this share of what one leaves unexplained."""
@@ -83,7 +82,7 @@ def explain_force(latent: Latent) -> Surface:
     tried = []
     for names in [n for n in SETS if varies(latent, n)] or [("t",)]:
         knots = tuple(choose_knots(latent, name, len(names)) for name in names)
-        phi = np.asarray(basis(names, knots, now))
+        phi = basis_along(names, knots, now)
         penalty = smoothness(tuple(len(row) for row in knots)) / size**2
         rows = phi.T * weight
         gram = rows @ phi + penalty

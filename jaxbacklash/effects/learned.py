@@ -36,9 +36,14 @@ def hats(u: Any, knots: Any) -> Any:
 
 def basis(coordinates: tuple[str, ...], knots: tuple[tuple[float, ...], ...], now: Any) -> Any:
     """The table's basis at a moment (or many): products of `hats`, the last coordinate running fastest."""
-    weights = hats(coordinate(coordinates[0], now), knots[0])
-    for name, row in zip(coordinates[1:], knots[1:]):
-        more = hats(coordinate(name, now), row)
+    return basis_at(tuple(coordinate(name, now) for name in coordinates), knots)
+
+
+def basis_at(values: tuple[Any, ...], knots: tuple[Any, ...]) -> Any:
+    """`basis` at values of its coordinates, each with its row of knots."""
+    weights = hats(values[0], knots[0])
+    for value, row in zip(values[1:], knots[1:]):
+        more = hats(value, row)
         weights = (weights[..., :, None] * more[..., None, :]).reshape(*more.shape[:-1], -1)
     return weights
 

@@ -5,13 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 
 from ..fitting import Comparison, Fit, Score
 from ..fitting.loop import NOTHING, read_plateau, sliding_level
-from ..mechanics import Drive
 from ..parameters import channel_unit, unit_text
+from ..pointwise import along
 from ..records import Record
 from ..signals import choose_intervals, fit_spline
 from ..system import System
@@ -148,18 +147,12 @@ class Motion:
 
     def restoring_torque(self, system: System) -> np.ndarray:
         """Torque that brings the link back to the play's middle, -joint torque at rest [N m], shape (N,)."""
-        hidden = tuple(jnp.zeros_like(self.y) for _ in system.state_names[2:])
-        state = (jnp.asarray(self.y), jnp.asarray(self.dy), *hidden)
-        now = system.instant(jnp.asarray(self.t), state, Drive(jnp.asarray(self.x), jnp.asarray(self.dx), self.force))
-        total, joint = system.torques(now, state)
-        ground = np.asarray(total - joint)
-        return ground + self.force - float(system.inertia) * self.ddy - float(system.damper.damping) * self.dz
+        said = along(system, self.t, self.y, self.dy, self.x, self.dx, self.force)
+        return said.torque - said.joint + self.force - float(system.inertia) * self.ddy - float(system.damper.damping) * self.dz
 
 
 def _law(system: System, z: np.ndarray) -> np.ndarray:
-    zero = jnp.zeros_like(jnp.asarray(z))
-    state = (jnp.asarray(z), zero, *(zero for _ in system.state_names[2:]))
-    return np.asarray(system.transmitted(zero, state, Drive(zero, zero, zero)))
+    return -along(system, 0.0, z, 0.0, 0.0, 0.0).joint
 
 
 def _length(translational: bool) -> str:
