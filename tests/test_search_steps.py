@@ -43,6 +43,7 @@ class Bench:
 
 def significant(monkeypatch, size):
     monkeypatch.setattr("jaxbacklash.criticism.search.significance", lambda trial, name: size)
+    monkeypatch.setattr("jaxbacklash.criticism.tried.significance", lambda trial, name: size)
 
 
 def test_a_model_known_from_a_stuck_fit_is_fitted_again(monkeypatch):

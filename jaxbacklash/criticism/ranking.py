@@ -20,7 +20,8 @@ from ..system import System
 from .candidates import Candidate, rank
 from .evidence import gain
 from .refine import Stage
-from .search import WHOLE, Search
+from .search import Search
+from .tried import WHOLE
 from .workbench import Workbench, correlation_length
 
 

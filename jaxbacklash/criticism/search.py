@@ -8,13 +8,13 @@ from dataclasses import dataclass, field, replace
 
 from ..fitting.search import ADEQUATE, silent
 from ..mechanics import AbstractEffect
-from ..parameters import specs, values, with_values
 from .candidates import Candidate, rank
 from .evidence import AS_WELL, NOISE_FLOOR, UNEXPLAINED, demanded, excess, explained, gain, measures_only, shapeless, significance
-from .memories import Member, families, may_replace, members
+from .memories import families, may_replace, members
+from .tried import WHOLE, Tried
 from .tuning import apart
 from .under_noise import promised
-from .workbench import PATIENCE, Trial, Workbench, adequate, strengths
+from .workbench import Trial, Workbench, adequate, strengths
 
 MOST_EFFECTS = 5
 """A model with more effects than this is no explanation any more."""
@@ -33,10 +33,6 @@ GLIMPSED = 2.0
 """How many times what is demanded of an addition the quick look must show before such a law is tried beside what explains."""
 SURE = 4.0
 """A gain predicted to be so many times what is demanded is no accident, so a fit that does not show it has stuck."""
-STUCK = 1.01
-"""A tied fit that was not finished and misses by so much more than its free windows has stuck."""
-WHOLE = 60
-"""Linearisations allowed to a model that is kept."""
 
 
 @dataclass(frozen=True)
@@ -51,24 +47,12 @@ class Step:
     evidence: dict[str, float] = field(default_factory=dict)
 
 
-class Search:
-    """Keeps every model that was fitted, so that none is fitted twice."""
+class Search(Tried):
+    """Adds effects to the joint one by one, and looks again at what it has added."""
 
     def __init__(self, bench: Workbench, progress: Callable[[str, float], None] = silent) -> None:
-        self.bench, self.progress = bench, progress
-        self.known: dict[tuple[frozenset[str], bool], Trial] = {}
+        super().__init__(bench, progress)
         self.level: dict[tuple[str, ...], Trial] = {}
-
-    def settle(self, trial: Trial) -> Trial:
-        """The trial finished, and its windows tied where it is good enough for that."""
-        if not trial.tied and adequate(trial):
-            tied = self.bench.fit(self.bench.effects(trial), trial, tied=True, patience=WHOLE)
-            # A tied search that has stuck tells nothing about the model.
-            if adequate(tied) and (tied.done or tied.misfit < STUCK * trial.misfit):
-                return self._keep(tied)
-        if not trial.done:
-            trial = self._keep(self.bench.fit(self.bench.effects(trial), trial, tied=trial.tied, patience=WHOLE))
-        return trial
 
     def base(self) -> Trial:
         """The joint alone."""
@@ -78,47 +62,6 @@ class Search:
             # A link that is not seen may be put anew at the start of every window; what it cannot do is jump between them.
             found = self._keep(self.bench.fit({}, found, through=True))
         return found
-
-    def add(self, before: Trial, candidate: Candidate) -> Trial:
-        """The model with one more effect, in place of simpler laws it contains, fitted as the model before was: tied or free."""
-        present = self.bench.effects(before)
-        effect = candidate.effect
-        for name in type(effect).absorbs:
-            if name in present:
-                simpler = values(present.pop(name))
-                taken = max(abs(simpler[n]) for n in strengths(self.bench.laws[name]()))
-                effect = with_values(effect, {n: values(effect)[n] + taken for n in strengths(effect)})
-        names = frozenset(present) | {candidate.name}
-        key = (names, before.tied or self.bench.grips(names))
-        if key not in self.known:
-            effects = {**present, candidate.name: effect}
-            self._keep(self.joined(effects, before) if before.tied else self.bench.fit(effects, before))
-        return self.known[key]
-
-    def joined(self, effects: dict[str, AbstractEffect], before: Trial, patience: int = PATIENCE) -> Trial:
-        """A tied fit from the windows of another model; where it sticks, as dry friction may, its windows are let go first."""
-        trial = self.bench.fit(effects, before, tied=True, patience=patience)
-        if trial.misfit < (STUCK if trial.done else 1.0) * before.misfit:
-            return trial
-        free = self._keep(self.bench.fit(effects, before, tied=False))
-        again = self.bench.fit(self.bench.effects(free), free, tied=True, patience=patience)
-        return min(trial, again, key=lambda t: t.cost)
-
-    def loosened(self, trial: Trial) -> Trial:
-        """The same model with its windows free."""
-        key = (trial.names, False)
-        if key not in self.known:
-            self._keep(self.bench.fit(self.bench.effects(trial), trial, tied=False))
-        return self.known[key]
-
-    def without(self, before: Trial, name: str) -> Trial:
-        """The model without one of its effects, fitted from the model with it unless what is known of it is near that."""
-        names = before.names - {name}
-        key = (names, before.tied and self.bench.grips(names) == self.bench.grips(before.names))
-        if key not in self.known or self.known[key].cost - before.cost > significance(before, name) ** 2:
-            effects = {n: e for n, e in self.bench.effects(before).items() if n != name}
-            self._keep(self.bench.fit(effects, before, tied=key[1]))
-        return self.known[key]
 
     def run(self) -> list[Step]:
         """The whole search: the path from the joint alone to the model kept."""
@@ -294,20 +237,6 @@ class Search:
             return False
         return gain(other, own) > demanded(self.bench)
 
-    def simplified(self, final: Trial, name: str, other: str) -> Trial:
-        """The model with a law reduced to a simpler one that it contains."""
-        effects = self.bench.effects(final)
-        shared = {n: v for n, v in values(effects.pop(name)).items() if n in specs(self.bench.laws[other]())}
-        effects[other] = with_values(self.bench.laws[other](), shared)
-        trial = self._keep(self.bench.fit(effects, final, tied=final.tied, patience=WHOLE))
-        if final.tied and not trial.done and trial.misfit > STUCK * final.misfit:
-            return self._keep(self.bench.fit(effects, final, tied=False, patience=WHOLE))
-        return trial
-
-    def finish(self, trial: Trial) -> Trial:
-        """The trial fitted to the end."""
-        return self._keep(self.bench.fit(self.bench.effects(trial), trial, tied=trial.tied, patience=WHOLE))
-
     def forward(self, start: Trial, steps: list[Step], least: float) -> list[Step]:
         """Add effects one by one, dropping those that become needless, until nothing helps any more.
 
@@ -403,21 +332,6 @@ class Search:
         first = [found[0] for names in families(self.bench).values() if (found := members(self.bench, current, names, rivals))]
         return {m.name: self.placed(current, m, tied=current.tied) for m in first}
 
-    def placed(self, trial: Trial, member: Member, *, tied: bool, patience: int = PATIENCE) -> Trial:
-        """The model with a law of a family with internal states in it, in place of those it takes the place of."""
-        effects = {**member.beside, member.name: member.tuned.effect}
-        key = (frozenset(effects), tied)
-        if key not in self.known:
-            self.progress(f"trying {member.name}", 0.45)
-            # A joint that was fitted without friction's memory is bent by it: the tuned one is nearer.
-            joint = trial.system if member.kin else member.tuned.system
-            fitted = self._keep(self.bench.fit(effects, trial, joint=joint, tied=tied, patience=patience, followed=True))
-            if tied and not adequate(fitted):
-                # Windows that are one trajectory can keep a law from where free ones find it.
-                free = self._keep(self.bench.fit(effects, trial, joint=joint, patience=patience, followed=True))
-                return self.settle(free)
-        return self.known[key]
-
     def best(self, current: Trial, tried: dict[str, Trial], least: float) -> str:
         """The simplest of the candidates that do as well as any: fewest parameters, acting before measuring only."""
         # What leaves noise goes before what does not, however little is left.
@@ -476,10 +390,3 @@ class Search:
                 if found[-1].misfit < NOISE_FLOOR:
                     break
         return found
-
-    def _keep(self, trial: Trial) -> Trial:
-        key = (trial.names, trial.tied)
-        if key not in self.known or trial.criterion < self.known[key].criterion:
-            self.known[key] = trial
-        return self.known[key]
-
