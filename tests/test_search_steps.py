@@ -3,7 +3,11 @@
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 
+import pytest
+
 from jaxbacklash.criticism.search import Search, Step
+from jaxbacklash.criticism.tried import SLIGHT
+from jaxbacklash.effects import Gravity
 
 
 @dataclass(frozen=True)
@@ -39,6 +43,21 @@ class Bench:
     def fit(self, effects, start=None, *, tied=False, patience=25, **_):
         self.asked.append((frozenset(effects), tied))
         return self.answers.pop(0)
+
+
+@pytest.mark.parametrize("costs", [(130.0, 90.0), (90.0,), (130.0, 140.0)])
+def test_a_larger_model_that_fits_worse_begins_again_near_the_smaller_one(monkeypatch, costs):
+    before, both = Model(frozenset({"preload"}), cost=100.0, tied=False), frozenset({"preload", "gravity"})
+    search, begun = Search(Bench()), []
+
+    def fit(effects, *_, **__):
+        begun.append(float(effects["gravity"].G))
+        return Model(both, cost=costs[len(begun) - 1], tied=False, free=("backlash", "gravity.G"))
+
+    monkeypatch.setattr(search.bench, "fit", fit)
+    candidate = SimpleNamespace(name="gravity", effect=Gravity(G=20.0))
+    assert search.add(before, candidate).cost == min(costs)
+    assert begun == pytest.approx([20.0, 20.0 * SLIGHT][: len(costs)])
 
 
 def significant(monkeypatch, size):

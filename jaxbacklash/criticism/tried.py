@@ -14,6 +14,8 @@ from .workbench import PATIENCE, Trial, Workbench, adequate, strengths
 
 STUCK = 1.01
 """A tied fit that was not finished and misses by so much more than its free windows has stuck."""
+SLIGHT = 0.03
+"""Share of its predicted strength at which an effect begins where from the whole of it the fit has stuck."""
 WHOLE = 60
 """Linearisations allowed to a model that is kept."""
 
@@ -49,7 +51,11 @@ class Tried:
         key = (names, before.tied or self.bench.grips(names))
         if key not in self.known:
             effects = {**present, candidate.name: effect}
-            self._keep(self.joined(effects, before) if before.tied else self.bench.fit(effects, before))
+            trial = self._keep(self.joined(effects, before) if before.tied else self.bench.fit(effects, before))
+            if trial.cost > before.cost and names > before.names:
+                # The larger model holds the smaller one: it has stuck on the way from the strength that was predicted.
+                slight = with_values(effect, {n: SLIGHT * values(effect)[n] for n in strengths(effect)})
+                self._keep(self.bench.fit({**present, candidate.name: slight}, before, tied=before.tied))
         return self.known[key]
 
     def joined(self, effects: dict[str, AbstractEffect], before: Trial, patience: int = PATIENCE) -> Trial:
