@@ -9,18 +9,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import jax.numpy as jnp
 import numpy as np
 
-from ..compiled import kept_jit
 from ..effects import Contact
 from ..errors import BadInput, NoAnswer
 from ..fitting import Fit
 from ..fitting.loop import read_plateau
-from ..mechanics import Drive
+from ..pointwise import along
 from ..signals import choose_intervals, fit_spline
 from ..skeletons import Skeleton, Skeletons, skeleton
-from ..system import System
 
 AGREE = 3.0
 """Standard errors of the difference within which two methods agree."""
@@ -177,16 +174,8 @@ def _loads(fit: Fit) -> np.ndarray | None:
     channels = record.channels
     x, dx = _smooth(record.t, channels.get("x", zero))
     y, dy = _smooth(record.t, channels["y"] if "y" in channels else channels["z"] + channels.get("x", zero))
-    return np.asarray(_torque_of_effects(system, record.t, y, dy, Drive(x, dx, zero)))
-
-
-@kept_jit
-def _torque_of_effects(system: System, t: Any, y: Any, dy: Any, drive: Drive) -> Any:
-    def torque(of: System) -> Any:
-        state = (y, dy, *(jnp.zeros_like(y) for _ in of.state_names[2:]))
-        return of.torques(of.instant(t, state, drive), state)[0]
-
-    return torque(system) - torque(system.without(*system.effects))
+    whole, bare = (along(of, record.t, y, dy, x, dx) for of in (system, system.without(*system.effects)))
+    return whole.torque - bare.torque
 
 
 def _smooth(t: np.ndarray, values: np.ndarray, window: float = 0.1) -> tuple[np.ndarray, np.ndarray]:

@@ -13,7 +13,6 @@ beside the torque (each within about half of its value): the torque is then what
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -24,7 +23,6 @@ from ..fitting import Fit
 from ..fitting.fit import SCORE_WINDOW, prepare
 from ..fitting.setup import first_guess, free_names, make_problem
 from ..fitting.shooting import Problem, Trajectory, Unknowns
-from ..mechanics import Instant
 from ..parameters import unit_text, values, with_values
 from ..pointwise import along
 from ..precision import require_double_precision
@@ -237,7 +235,7 @@ def _along(
         t = at[0] + (at[1] - at[0]) * per / each * np.arange((rows.stop - rows.start) * each)
         inside = t <= record.t[-1] + 1e-9
         found = [np.interp(t, at, np.asarray(v)[rows].ravel()) for v in (*path.states[:2], path.drive.x, path.drive.dx)]
-        now = moments(system, t, *found)
+        now = along(system, t, *found).now
         part = {
             "t": t, "record": np.full(t.size, number), "torque": torque[rows].ravel(), "stderr": stderr[rows].ravel(),
             **{name: np.broadcast_to(np.asarray(getattr(now, name)), t.shape) for name in MOTION},
@@ -253,8 +251,3 @@ def record_rows(records: tuple[Record, ...], samples: int) -> list[slice]:
     counts = [-(-record.samples // samples) for record in records]
     firsts = np.cumsum([0, *(count + 1 for count in counts[:-1])])
     return [slice(int(first), int(first) + count) for first, count in zip(firsts, counts)]
-
-
-def moments(system: System, t: Any, y: Any, dy: Any, x: Any, dx: Any) -> Instant:
-    """What effects see along a motion, arrays of one shape."""
-    return along(system, t, y, dy, x, dx).now

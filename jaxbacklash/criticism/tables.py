@@ -8,8 +8,8 @@ from scipy.linalg import solveh_banded
 from ..compiled import kept_jit
 from ..effects.learned import basis_at, coordinate
 from ..mechanics import Instant
-from ..pointwise import padded
-from .latent import Latent, moments, record_rows
+from ..pointwise import along, padded
+from .latent import Latent, record_rows
 
 
 def varies(latent: Latent, names: tuple[str, ...]) -> bool:
@@ -45,7 +45,7 @@ def motions_of(latent: Latent) -> list[tuple[slice, Instant]]:
     path, found = latent.inside.path, []
     for rows in record_rows(latent.records, path.times.shape[1]):
         t, y, dy, x, dx = (np.asarray(v)[rows].ravel() for v in (path.times, *path.states[:2], path.drive.x, path.drive.dx))
-        found.append((rows, moments(latent.system, t, y, dy, x, dx)))
+        found.append((rows, along(latent.system, t, y, dy, x, dx).now))
     return found
 
 
@@ -57,8 +57,8 @@ def basis_at_nodes(
     windows, per = latent.inside.path.times.shape
     found = np.zeros((windows, nodes, int(np.prod([len(row) for row in knots]))))
     for rows, now in motions:
-        along = basis_along(names, knots, now)
-        found[rows] = _project(along, per / nodes, (rows.stop - rows.start) * nodes).reshape(-1, *found.shape[1:])
+        seen = basis_along(names, knots, now)
+        found[rows] = _project(seen, per / nodes, (rows.stop - rows.start) * nodes).reshape(-1, *found.shape[1:])
     return found
 
 

@@ -17,7 +17,8 @@ from ..fitting import Fit
 from ..fitting.shooting import Problem, Unknowns, local_coefficients, trajectory
 from ..mechanics import Drive
 from ..parameters import unit_text
-from .latent import MOTION, NODES, Latent, moments, record_rows
+from ..pointwise import along
+from .latent import MOTION, NODES, Latent, record_rows
 from .shares import out_of_sample, weights
 from .surface import SETS, Surface
 from .tables import basis_along, choose_knots, smoothness, varies
@@ -44,7 +45,7 @@ def missing_force(fit: Fit) -> Latent:
         y, dy, x, dx = (mean(v) for v in motion)
         # A force sought as an effect's torque on the link: the transmitted force is the opposite of that.
         left = mean(predicted - np.asarray(w.measured))
-        now = moments(fit.system, t, y, dy, x, dx)
+        now = along(fit.system, t, y, dy, x, dx).now
         part = {
             "t": t, "record": np.full(t.size, number), "torque": left,
             "stderr": np.full(t.size, fit.noise[number] / np.sqrt(group)),
@@ -76,7 +77,7 @@ def _along(problem: Problem, unknowns: Unknowns) -> tuple[Any, tuple[Any, ...], 
 def explain_force(latent: Latent) -> Surface:
     """The coordinates that explain a missing force best: tables over one or two of them, by least squares, judged on stretches
     that they were not made from."""
-    now = moments(latent.system, latent.t, latent.y, latent.dy, latent.x, latent.dx)
+    now = along(latent.system, latent.t, latent.y, latent.dy, latent.x, latent.dx).now
     weight = weights(latent, latent.torque)
     size = 3.0 * latent.rms
     tried = []
