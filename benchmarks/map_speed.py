@@ -66,8 +66,8 @@ def operations(lanes: int) -> tuple[int, float]:
     motion = linear_pieces.Motion(0 * one, 0 * one, one, 0 * one, 0 * one, one, 0 * one, 300 * one)
 
     def legs(pieces: Any, motion: Any) -> Any:
-        play, contact = linear_pieces.branches(pieces)
-        return jax.lax.fori_loop(0, 100, lambda _, m: linear_pieces.leg(pieces, play, contact, m), motion)
+        both = linear_pieces.branches(pieces)
+        return jax.lax.fori_loop(0, 100, lambda _, m: linear_pieces.leg(pieces, both, m), motion)
 
     text = jax.jit(legs).lower(pieces, motion).as_text()
     body = text.split("stablehlo.while", 1)[-1]
@@ -84,12 +84,12 @@ def legs_a_period(system: Any, drive: Any, start: np.ndarray) -> tuple[float, fl
 
     def one(block: Any) -> Any:
         pieces, p, v = block
-        y, play_and_contact = begin(p, v), linear_pieces.branches(pieces)
+        y, both = begin(p, v), linear_pieces.branches(pieces)
         now = linear_pieces.Motion(*y[:4], y.side, 1.0 + 0.0 * p, 0.0 * p, CHUNK * 2.0 * np.pi / pieces.omega)
 
         def go(carry: Any) -> Any:
             count, now = carry
-            return count + (now.left > 0.0), linear_pieces.leg(pieces, *play_and_contact, now)
+            return count + (now.left > 0.0), linear_pieces.leg(pieces, both, now)
 
         return jax.lax.while_loop(lambda c: (c[1].left > 0.0).any(), go, (jax.numpy.zeros(lanes), now))[0]
 

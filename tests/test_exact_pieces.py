@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from jaxbacklash.dynamics.errorbars import batch_error
+from jaxbacklash.dynamics.errorbars import BATCHES, STUDENT, batch_error
 from jaxbacklash.dynamics.family import CASES, PaperCase
 from jaxbacklash.dynamics.follow import follow
 from jaxbacklash.dynamics.maps import paper_map
@@ -78,8 +78,8 @@ def test_a_leg_ends_on_the_edge_however_it_gets_there(damping):
     phase = rng.uniform(0.0, 2.0 * np.pi, lanes)
     start = *rng.uniform(-0.5, 0.5, (2, lanes)), one, 0.0 * one, 0.0 * one, np.cos(phase), np.sin(phase), 1e9 * one
     now, missed = linear_pieces.Motion(*(jnp.asarray(n) for n in start)), []
-    play, contact = linear_pieces.branches(pieces)
-    step = jax.jit(lambda now: linear_pieces.leg(pieces, play, contact, now))
+    both = linear_pieces.branches(pieces)
+    step = jax.jit(lambda now: linear_pieces.leg(pieces, both, now))
     for _ in range(200):
         after = step(now)
         edge = jnp.where(now.side == 0.0, after.side, now.side)
@@ -158,6 +158,13 @@ def test_dimensional_and_dimensionless_maps_are_one():
     np.testing.assert_allclose(np.asarray(early.p)[:3] / 0.005, np.asarray(small.p)[:3], atol=1e-7)
     assert float(found.lyapunov[0]) / 200.0 == pytest.approx(float(map_.lyapunov[0, 0]), abs=0.02)
     assert float(map_.lyapunov[1, 0]) == pytest.approx(-0.02, abs=2e-3)
+
+
+def test_error_bars_are_widened_by_students_quantile():
+    from scipy import stats
+
+    expected = stats.t.ppf(stats.norm.cdf(1.0), np.arange(1, BATCHES))
+    np.testing.assert_allclose(STUDENT, expected, atol=6e-4)
 
 
 def test_error_bars_hold_what_they_say():

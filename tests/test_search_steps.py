@@ -32,7 +32,7 @@ class Bench:
 
     def __init__(self, *answers: Model) -> None:
         self.answers, self.asked = list(answers), []
-        self.laws = {"gravity": SimpleNamespace(states=(), absorbs=()), "preload": SimpleNamespace(states=(), absorbs=())}
+        self.laws = {name: SimpleNamespace(states=(), absorbs=(), slides=False) for name in ("gravity", "preload")}
 
     def effects(self, trial):
         return dict.fromkeys(trial.names, "as fitted")
@@ -171,3 +171,33 @@ def test_a_law_with_states_waits_until_it_explains_or_nothing_else_helps(monkeyp
     assert search.best(current, {"dahl": explains, "gravity": static}, 0.25) == "dahl"
     nibbling = replace(static, misfit=29.0)
     assert search.best(current, {"dahl": soaking, "gravity": nibbling}, 0.25) == "dahl"
+
+
+def laws(**absorbs):
+    torque = lambda self: 0.0  # noqa: E731
+    return {n: SimpleNamespace(states=(), absorbs=a, slides=True, torque=torque) for n, a in absorbs.items()}
+
+
+@pytest.mark.parametrize("ahead", [5.0, 50.0])
+def test_models_that_take_each_others_place_come_to_an_end(monkeypatch, ahead):
+    """A law stands in for a simpler one that it contains, is reduced to it, and would stand in again."""
+    simple, rich = Model(frozenset({"simple"}), cost=100.0), Model(frozenset({"rich"}), cost=100.0 - 0.5 * ahead)
+    search, asked = Search(Bench()), []
+    search.bench.laws = laws(simple=(), rich=("simple",), other=())
+    monkeypatch.setattr(search, "instead", lambda steps, name: asked.append(name) or [rich if name == "simple" else simple])
+    monkeypatch.setattr(search, "reduced", lambda steps: [*steps, Step(simple, "simple", ("rich",), ())])
+    steps, level = search.swap([Step(simple, "simple", (), ())])
+    assert steps[-1].trial.names == simple.names
+    assert (("rich",) in level)
+    assert len(asked) == 1
+
+
+@pytest.mark.parametrize(("ahead", "taken"), [(1.0, False), (2.1, False), (10.0, True)])
+def test_a_richer_relative_replaces_a_law_only_where_it_is_clearly_better(monkeypatch, ahead, taken):
+    simple, rich = Model(frozenset({"simple"}), cost=100.0), Model(frozenset({"rich"}), cost=100.0 - 0.5 * ahead)
+    search = Search(Bench())
+    search.bench.laws = laws(simple=(), rich=("simple",), other=())
+    monkeypatch.setattr(search, "instead", lambda steps, name: [rich] if name == "simple" else [])
+    monkeypatch.setattr(search, "reduced", lambda steps: steps)
+    steps, _ = search.swap([Step(simple, "simple", (), ())])
+    assert (steps[-1].trial is rich) == taken

@@ -59,6 +59,7 @@ def test_a_store_goes_into_its_file_some_chunks_at_a_time(tmp_path, monkeypatch,
     pytest.importorskip("h5netcdf")
     monkeypatch.setattr(labels, "ROOM", room)
     stored = run_map(small(lanes=8), store=tmp_path / "store")
+    assert (stored.poincare.chunks is not None) == (room < stored.poincare.size)  # small arrays are read at once
     write_netcdf(stored, tmp_path / "map.nc")
     with xarray.open_dataset(tmp_path / "map.nc", engine="h5netcdf") as found:
         assert same(stored, found)

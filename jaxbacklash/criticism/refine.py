@@ -154,7 +154,9 @@ class _Judge:
         bench = self.bench
         problem, free = bench.problem(bench.effects(trial), trial.system)
         still = Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
-        scored, _ = score(problem, still, bench.layout, group=bench.group)
+        # A window whose error is quoted is one trajectory, wherever the search was cut.
+        whole = eqx.tree_at(lambda p: p.windows.tie, problem, bench.ties)
+        scored, _ = score(whole, still, bench.layout, group=bench.group)
         held = None if self.heldout is None else self._predict(problem)
         q = len(free)
         scales = trial.scales[:q]

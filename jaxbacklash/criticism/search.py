@@ -90,12 +90,18 @@ class Search(Tried):
         steps = list(steps)
         while len(steps) > 1 and excess(steps[-1].trial) > UNEXPLAINED:
             added = steps[-1].added
-            before, after = excess(steps[-2].trial), excess(steps[-1].trial)
+            before, after = (excess(t) for t in self.alike(steps[-2].trial, steps[-1].trial))
             least = MOST if added is not None and measures_only(self.bench.laws[added]) else LITTLE
             if before - after > least * before:
                 break
             steps.pop()
         return steps
+
+    def alike(self, before: Trial, after: Trial) -> tuple[Trial, Trial]:
+        """Two models of a path as they compare: both with free windows where one of them has them, if that is known."""
+        if after.tied and not before.tied:
+            after = self.known.get((after.names, False), after)
+        return before, after
 
     def with_hidden(self, steps: list[Step]) -> list[Step]:
         """Another path, by a law with internal states, if it explains the record and the one without does not.
@@ -179,22 +185,36 @@ class Search(Tried):
         added = next(n for n in best.names if self.bench.laws[n].states)
         return self.forward(best, [steps[0], Step(best, added, (), ())], MUCH)
 
-    def swap(self, steps: list[Step]) -> tuple[list[Step], dict[tuple[str, ...], Trial]]:
-        """One effect of the last model after the other replaced by what else would do: the better path, and what does as well."""
+    def swap(
+        self, steps: list[Step], seen: frozenset[frozenset[str]] = frozenset()
+    ) -> tuple[list[Step], dict[tuple[str, ...], Trial]]:
+        """One effect of the last model after the other replaced by what else would do: the better path, and what does as well.
+
+        ``seen`` are the models that were kept on the way, to none of which it goes back.
+        """
         level: dict[tuple[str, ...], Trial] = {}
         final = steps[-1].trial
         if not final.names or not final.tied or not adequate(final):
             return steps, level
+        seen |= {final.names}
         for name in sorted(final.names):
             for other in self.instead(steps, name):
                 lead = final.criterion - other.criterion
-                if lead > (demanded(self.bench) if self.only_measures(other, final) else 2.0) and adequate(other):
+                if other.names not in seen and lead > self.lead(other, final, name) and adequate(other):
                     other = other if other.done else self.finish(other)
                     added = next(iter(other.names - final.names))
-                    return self.swap(self.reduced([*steps[:-1], Step(other, added, (), ())]))
+                    path = self.reduced([*steps[:-1], Step(other, added, (), ())])
+                    if path[-1].trial.names not in seen:
+                        return self.swap(path, seen)
                 if -lead < demanded(self.bench):
                     level[tuple(sorted(other.names))] = other
         return steps, level
+
+    def lead(self, other: Trial, final: Trial, name: str) -> float:
+        """By how much another model must be better to replace the last one: clearly, where what is new in it is of the measuring
+        chain alone or contains the law whose place it takes."""
+        new = [self.bench.laws[n] for n in other.names - final.names]
+        return demanded(self.bench) if all(measures_only(law) or name in law.absorbs for law in new) else 2.0
 
     def reduced(self, steps: list[Step]) -> list[Step]:
         """The path with laws of its last model reduced to simpler ones that they contain, where those do as well."""
@@ -207,10 +227,6 @@ class Search(Tried):
                     settled, dropped = self.prune(self.settle(simpler))
                     return self.reduced([*steps, Step(settled, other, (name, *dropped), ())])
         return steps
-
-    def only_measures(self, other: Trial, final: Trial) -> bool:
-        """Whether what is new in a model is of the measuring chain alone."""
-        return all(measures_only(self.bench.laws[n]) for n in other.names - final.names)
 
     def instead(self, steps: list[Step], name: str) -> list[Trial]:
         """Models with another effect in the place of one, from the windows of the model kept.

@@ -8,16 +8,22 @@ from ..fitting.search import silent
 from ..mechanics import AbstractEffect
 from ..parameters import specs, values, with_values
 from .candidates import Candidate
+from .cuts import cut_free
 from .evidence import significance
 from .memories import Member
 from .workbench import PATIENCE, Trial, Workbench, adequate, strengths
 
 STUCK = 1.01
-"""A tied fit that was not finished and misses by so much more than its free windows has stuck."""
+"""A tied fit that misses by so much more than its free windows has stuck, or their freedom hides what the model lacks."""
 SLIGHT = 0.03
 """Share of its predicted strength at which an effect begins where from the whole of it the fit has stuck."""
 WHOLE = 60
 """Linearisations allowed to a model that is kept."""
+
+
+def follows(tied: Trial, free: Trial) -> bool:
+    """Whether a tied fit misses by hardly more than its free windows."""
+    return adequate(tied) and tied.misfit < STUCK * free.misfit
 
 
 class Tried:
@@ -26,17 +32,46 @@ class Tried:
     def __init__(self, bench: Workbench, progress: Callable[[str, float], None] = silent) -> None:
         self.bench, self.progress = bench, progress
         self.known: dict[tuple[frozenset[str], bool], Trial] = {}
+        self.asked: set[frozenset[str]] = set()  # models that were to be tied with cuts
 
     def settle(self, trial: Trial) -> Trial:
         """The trial finished, and its windows tied where it is good enough for that."""
         if not trial.tied and adequate(trial):
             tied = self.bench.fit(self.bench.effects(trial), trial, tied=True, patience=WHOLE)
+            if follows(tied, trial):
+                return self._keep(tied)
+            if (through := self.let_go(trial)) is not None:
+                return through
             # A tied search that has stuck tells nothing about the model.
-            if adequate(tied) and (tied.done or tied.misfit < STUCK * trial.misfit):
+            if adequate(tied) and tied.done:
                 return self._keep(tied)
         if not trial.done:
             trial = self._keep(self.bench.fit(self.bench.effects(trial), trial, tied=trial.tied, patience=WHOLE))
         return trial
+
+    def let_go(self, free: Trial) -> Trial | None:
+        """The same model tied by way of cuts where dry friction does not let the search through, if that helps.
+
+        From there the whole trajectory may be in reach. If it is not, every model of the record is tied with these cuts from
+        then on, so that they remain comparable.
+        """
+        asked = free.names in self.asked or not any(self.bench.laws[name].slides for name in free.names)
+        ties = None if asked or self.bench.is_cut else cut_free(self.bench, free)
+        self.asked.add(free.names)
+        if ties is None:
+            return None
+        self.progress("letting go of windows that friction holds", 0.5)
+        self.bench.cut(ties)
+        parted = self.bench.fit(self.bench.effects(free), free, tied=True, patience=WHOLE)
+        self.bench.cut(self.bench.ties)
+        if not follows(parted, free):
+            return None
+        whole = self.bench.fit(self.bench.effects(parted), parted, tied=True, patience=WHOLE)
+        if follows(whole, free):
+            return self._keep(whole)
+        self.bench.cut(ties)
+        self.known = {key: trial for key, trial in self.known.items() if not trial.tied}
+        return self._keep(parted)
 
     def add(self, before: Trial, candidate: Candidate) -> Trial:
         """The model with one more effect, in place of simpler laws it contains, fitted as the model before was: tied or free."""

@@ -28,12 +28,18 @@ def judge_rest(final: Trial, fits: list[Fit]) -> Verdict:
     first, last = fits[0], fits[-1]
     complete = final.misfit < NEAR_NOISE and last.score.median < 1.1
     named = ", ".join(sorted(final.names))
+    left = "what is left is noise"
+    if last.score.rms > 1.1:
+        left += f" but in a few windows (the median window is off by {last.score.median:.2f} times the noise)"
     if complete and not final.names:
-        text = f"The joint's play, stiffness and damping explain the record: what is left is noise ({last.score.rms:.2f} of it)."
+        text = (
+            f"The joint's play, stiffness and damping explain the record: the prediction error is {last.score.rms:.3g} times the "
+            f"noise, and {left}."
+        )
     elif complete:
         text = (
             f"Missing in the base model: {named}. With it the prediction error falls from {first.score.rms:.3g} to "
-            f"{last.score.rms:.3g} times the noise, and what is left is noise."
+            f"{last.score.rms:.3g} times the noise, and {left}."
         )
     else:
         text = f"Incomplete: the misfit is still {last.score.rms:.3g} times the noise"

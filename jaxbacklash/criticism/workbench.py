@@ -102,6 +102,7 @@ class Workbench:
         self.pace = self.gripped or base
         least = 0 if beside is None else prepare(self.pace, [beside], window)[0].intervals
         self.windows, self.layout, self.group = prepare(self.pace, [record], window, intervals=least)
+        self.ties = np.asarray(self.windows.tie)
         self.noise_factor = 1.0
         self.laws = {n: c for n, c in catalogue().items() if c.catalogued and applicable(c, base)}
         self.static = {n: c for n, c in self.laws.items() if not c.states}
@@ -208,6 +209,15 @@ class Workbench:
         self.windows = eqx.tree_at(lambda w: (w.weight, w.drop), w, (np.asarray(w.weight) / factor, np.asarray(w.drop) / factor))
         self.layout = replace(layout, noise=tuple(factor * n for n in layout.noise))
 
+    def cut(self, ties: np.ndarray) -> None:
+        """Tie only those windows from now on that have a one in ``ties`` (W,); ``self.ties`` keeps what was tied before."""
+        self.windows = eqx.tree_at(lambda w: w.tie, self.windows, ties)
+
+    @property
+    def is_cut(self) -> bool:
+        """Whether some windows are not tied that could be."""
+        return not np.array_equal(self.windows.tie, self.ties)
+
     def _trial(
         self, problem: Problem, solution: Any, names: frozenset[str], free: tuple[str, ...], tied: bool, patience: int
     ) -> Trial:
@@ -218,10 +228,11 @@ class Workbench:
         fitted = with_values(system, dict(zip(values(system), moved)))
         count = freedom(solution.value, self.windows, tied=tied)
         rows = float(np.sum(np.asarray(self.windows.weight) > 0.0))
-        hidden = solution.value.starts.shape[0] - 2
+        states = solution.value.starts.shape[0]
         used = float(np.sum(np.any(np.asarray(self.windows.weight) > 0.0, axis=1)))
-        # An internal state of a free window is a parameter a window.
-        penalty = len(free) * np.log(rows) + (0.0 if tied else 2.0 * hidden * used)
+        # What a window may begin with by itself is a parameter: an internal state where windows are free, all where one is cut.
+        starts = states * float(np.sum(self.ties - np.asarray(self.windows.tie))) if tied else (states - 2) * used
+        penalty = len(free) * np.log(rows) + 2.0 * starts
         return Trial(
             fitted, names, free, solution.value, cost, float(np.sqrt(2.0 * cost / count)),
             np.asarray(solution.stats["schur"]), np.asarray(solution.stats["pull"]),

@@ -130,10 +130,16 @@ def follow_exact(pieces: LinearPieces, phase: Array, p0: Array, v0: Array, stops
 def _block_by_block(pieces: LinearPieces, phase: Array, p0: Array, v0: Array, stops: Array, plan: Plan) -> Followed:
     lanes = p0.shape[0]
     blocks = -(-lanes // BLOCK)
-    given = jax.tree.map(
-        lambda a: jnp.pad(a, (0, blocks * BLOCK - lanes), mode="edge").reshape(blocks, BLOCK), (pieces, phase, p0, v0)
-    )
-    found = jax.lax.map(lambda block: _follow_block(block[0], block[1], block[2], block[3], stops, plan), given)
+    leaves, shape = jax.tree.flatten((pieces, phase, p0, v0))
+    # As one array: each of ten would have a program of its own that cuts its block out.
+    given = jnp.pad(jnp.stack(leaves), ((0, 0), (0, blocks * BLOCK - lanes)), mode="edge")
+    given = jnp.moveaxis(given.reshape(-1, blocks, BLOCK), 1, 0)
+
+    def one(block: Array) -> Followed:
+        pieces, phase, p0, v0 = jax.tree.unflatten(shape, list(block))
+        return _follow_block(pieces, phase, p0, v0, stops, plan)
+
+    found = jax.lax.map(one, given)
     return jax.tree.map(lambda a: jnp.moveaxis(a, 0, -2).reshape(*a.shape[1:-1], -1)[..., :lanes], found)
 
 
@@ -166,7 +172,8 @@ def _solve(term: Any, solver: Any, args: Any, period: Array, p0: Array, v0: Arra
         stepsize_controller=Stops(ts=stops), saveat=diffrax.SaveAt(steps=True, t0=True, fn=_kept),
         max_steps=plan.stops.size - 1, adjoint=diffrax.ForwardMode(), throw=False,
     )  # fmt: skip
-    p, v, growth, unresolved = solution.ys
+    assert solution.ys is not None
+    p, v, growth, unresolved = jnp.moveaxis(solution.ys, 1, 0)
     return summary(plan, period, p, v, growth, unresolved[-1] > 0.0)
 
 
@@ -179,5 +186,5 @@ def trace_exact(lanes: int, plan: Plan) -> Callable[[], Any]:
     return lambda: jax.block_until_ready(follow_exact(*given, plan))
 
 
-def _kept(t: Any, y: Phase, args: Any) -> tuple[Array, Array, Array, Array]:
-    return y.p, y.v, y.growth, y.unresolved
+def _kept(t: Any, y: Phase, args: Any) -> Array:
+    return jnp.stack([y.p, y.v, y.growth, y.unresolved])

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadInput
-from .maps import KEPT, Request, package_version
+from .maps import KEPT, VARIABLES, Request, package_version
 from .periodicity import CHAOTIC, UNRESOLVED
-from .tiles import MemoryTiles, TileStore
+from .tiles import MemoryTiles, TileStore, shape_of
 
 ROOM = 2**20
 """Numbers that are read from a store at once: asking costs as much as reading a few chunks."""
@@ -58,7 +58,9 @@ def dataset(wanted: Request, kept: MemoryTiles) -> Any:
 
 
 def dataset_from_store(wanted: Request, kept: TileStore) -> Any:
-    """A map in a store as a Dataset whose arrays are read from the tiles when they are needed."""
+    """A map in a store as a Dataset; arrays of more than `ROOM` numbers are read from the tiles when they are needed."""
+    if not is_large(wanted):
+        return _labelled(wanted, {name: part[...] for name, part in kept.arrays.items()}, kept.solvers)
     da = need_dask_array()
     # Names of our own: dask's would depend on the folder, and with them the order in which a file is written.
     # Told what it will find, dask need not read the store to learn it.
@@ -67,6 +69,11 @@ def dataset_from_store(wanted: Request, kept: TileStore) -> Any:
         for name, part in kept.arrays.items()
     }
     return _labelled(wanted, lazy, kept.solvers)
+
+
+def is_large(wanted: Request) -> bool:
+    """Whether a variable of the map has more than `ROOM` numbers."""
+    return max(int(np.prod(shape_of(wanted, name))) for name in VARIABLES) > ROOM
 
 
 def _labelled(wanted: Request, arrays: dict[str, Any], solvers: set[str]) -> Any:

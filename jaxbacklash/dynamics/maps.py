@@ -156,7 +156,7 @@ def run_map(
 
     Returns
     -------
-    `xarray.Dataset` over the axes; from a store its arrays are read when they are needed
+    `xarray.Dataset` over the axes; from a store large arrays are read when they are needed
 
     Raises
     ------

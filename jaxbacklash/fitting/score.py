@@ -19,7 +19,7 @@ from .windows import Layout
 
 NEAR = 1e-4
 """How much of half the sum of squares, in units of the noise, may be left to gain a window when a score is told."""
-_residuals = kept_jit(residuals)
+kept_residuals = kept_jit(residuals)
 
 
 class Score(eqx.Module):
@@ -81,7 +81,7 @@ def score(problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 
 
 def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout, group: int, record: int) -> Score:
     w = problem.windows
-    motion, base, tie = (np.asarray(r) for r in _residuals(problem, found, predicted))
+    motion, base, tie = (np.asarray(r) for r in kept_residuals(problem, found, predicted))
     at_rest = _spline_residual(w)
     energy = np.sum(motion**2, axis=1) + np.sum(base**2 - at_rest**2, axis=1) + np.sum(tie**2, axis=1)
     present = np.sum(np.asarray(w.weight) > 0.0, axis=1)

@@ -75,9 +75,18 @@ def drawn_in_style(draw: Draw) -> Draw:
     return inside  # type: ignore[return-value]
 
 
-def new_figure(height: float) -> Figure:
-    """An empty figure as wide as a page, ``height`` inches tall."""
-    return Figure(figsize=(WIDTH, height), layout="constrained", facecolor="white")
+def new_figure(height: float, margins: tuple[float, float, float, float] | None = None) -> Figure:
+    """An empty figure as wide as a page, ``height`` inches tall.
+
+    ``margins`` left, right, below and above, in inches, for axes whose labels have a known room: finding it takes as long as
+    drawing.
+    """
+    if margins is None:
+        return Figure(figsize=(WIDTH, height), layout="constrained", facecolor="white")
+    figure = Figure(figsize=(WIDTH, height), facecolor="white")
+    left, right, below, above = margins
+    figure.subplots_adjust(left / WIDTH, below / height, 1.0 - right / WIDTH, 1.0 - above / height)
+    return figure
 
 
 def empty_figure(sentence: str) -> Figure:
@@ -118,11 +127,21 @@ def readable_log(ax: Axes, axis: str, low: float, high: float) -> None:
     (ax.yaxis if axis == "y" else ax.xaxis).set_minor_formatter(NullFormatter())
 
 
+def lay_out(figure: Figure) -> None:
+    """Put everything in its place, once: matplotlib would otherwise draw the whole figure for it each time one is written."""
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        if figure.axes:
+            engine.execute(figure)
+        figure.set_layout_engine(None)  # "none" would leave a stand-in, and the drawing for it
+
+
 def to_svg(figure: Figure) -> str:
     """A figure as one ``<svg>`` element: text stays text, ink is ``currentColor``, the background is clear."""
     buffer = io.StringIO()
     nothing = dict.fromkeys(["Date", "Creator", "Format", "Type"])
     with styled():
+        lay_out(figure)
         figure.savefig(buffer, format="svg", transparent=True, dpi=RASTER_DPI, metadata=nothing)
     text = buffer.getvalue()
     text = text[text.index("<svg") :]
@@ -138,5 +157,6 @@ def to_png_data_uri(figure: Figure, dpi: float = 150.0) -> str:
     """A figure on white as a ``data:`` address, for places that take no SVG."""
     buffer = io.BytesIO()
     with styled():
+        lay_out(figure)
         figure.savefig(buffer, format="png", dpi=dpi, facecolor="white")
     return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, TwoSlopeNorm, to_rgba
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from .drawing import column, drawn_in_style, empty_figure, in_degrees, new_figure
 from .figures_joint import mark_play, play_edges
@@ -51,6 +52,8 @@ def where_it_fails(dependences: Sequence[Any], *, unit: str) -> Figure:
             lower.set_xticks(0.5 * (edges[1:] + edges[:-1]), [SHORT_NAMES.get(name, name) for name in entry.names])
             if len(entry.names) > 2:
                 lower.tick_params(axis="x", rotation=30 if len(shown) > 1 else 0)
+        elif len(shown) > 1:
+            lower.xaxis.set_major_locator(MaxNLocator(4))  # long numbers would run into one another
         lower.set_xlabel(with_unit(entry.label.replace("'", "′"), entry.unit))
         lower.set_xlim(edges[0], edges[-1])
         share = column(entry.share)

@@ -50,8 +50,8 @@ def exponent_and_period_map(
     exponent, period = np.asarray(exponent, dtype=float).T, np.asarray(period).T
     if not np.isfinite(exponent).any():
         return empty_figure("No cell of this map could be followed.")
-    figure = new_figure(MEDIUM + 0.5)
-    left, right = figure.subplots(1, 2, sharex=True, sharey=True)
+    figure = new_figure(MEDIUM + 0.5, margins=(0.75, 0.1, 0.45, 0.1))
+    left, right = figure.subplots(1, 2, sharex=True, sharey=True, gridspec_kw={"wspace": 0.14})
     extent = (*_sides(x), *_sides(y))
     known = exponent[np.isfinite(exponent)]
     reach = max(float(np.quantile(np.abs(known), 0.995)), 1e-9)
@@ -93,8 +93,8 @@ def exponent_curve(
     Figure
     """
     x, exponent, stderr = column(x), column(exponent), column(stderr)
-    figure = new_figure(TALL if samples is not None else MEDIUM)
-    axes = figure.subplots(2 if samples is not None else 1, 1, sharex=True, squeeze=False)[:, 0]
+    figure = new_figure(TALL if samples is not None else MEDIUM, margins=(0.75, 0.1, 0.45, 0.5 if title else 0.35))
+    axes = figure.subplots(2 if samples is not None else 1, 1, sharex=True, squeeze=False, gridspec_kw={"hspace": 0.08})[:, 0]
     top = axes[0]
     top.axhline(0.0, color=INK, lw=0.8)
     wide = np.nan_to_num(2.0 * stderr)

@@ -59,7 +59,6 @@ def map_report(map_: Any, result: dict[str, Any], sentence: str, path: Path) -> 
         "verdict_text": sentence,
     }  # fmt: skip
     write_report(path, told, panels)
-    first.set_layout_engine("none")  # it lies where it was put
     return base64.b64decode(to_png_data_uri(first).split(",", 1)[1])
 
 
