@@ -146,7 +146,7 @@ def _test(
     if np.sum(number > 0) < 2:
         return None
     with np.errstate(invalid="ignore", divide="ignore"):
-        average = lambda v: np.where(number > 0, np.bincount(where, v, size) / number, np.nan)  # noqa: E731
+        average = lambda v: np.where(number > 0, np.bincount(where, v, size) / np.maximum(number, 1), np.nan)  # noqa: E731
         mean, square = average(torque), average(torque**2)
         excess = np.bincount(where, np.maximum(torque**2 - latent.stderr**2, 0.0), size)
         ranks = rankdata(np.abs(torque) if of == "size" else torque)

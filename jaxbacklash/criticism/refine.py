@@ -15,7 +15,7 @@ from ..fitting.equation_error import Start
 from ..fitting.estimates import judge
 from ..fitting.fit import ABSOLUTE, SCORE_WINDOW, Fit, prepare
 from ..fitting.score import Score, score
-from ..fitting.search import TIES, silent
+from ..fitting.search import TIES, inverse_information, silent
 from ..fitting.setup import base_system, first_guess, free_names
 from ..fitting.shooting import Problem, Unknowns
 from ..precision import require_double_precision
@@ -160,12 +160,10 @@ class _Judge:
         held = None if self.heldout is None else self._predict(problem)
         q = len(free)
         scales = trial.scales[:q]
-        scaled = np.linalg.pinv(_unit(trial.schur[:q, :q]), rcond=1e-14, hermitian=True)
-        sizes = 1.0 / np.sqrt(np.maximum(np.diag(trial.schur)[:q], 1e-300))
         excess = max(1.0, trial.misfit**2)
         if bench.grips(trial.names) and not adequate(trial):
             excess *= trial.correlation  # the misfit of one run is of one piece
-        covariance = excess * scaled * np.outer(sizes * scales, sizes * scales)
+        covariance = excess * inverse_information(trial.schur[:q, :q]) * np.outer(scales, scales)
         stderr = dict(zip(free, np.sqrt(np.maximum(np.diag(covariance), 0.0))))
         plain = pruned(trial)
         records = (bench.record,)
@@ -187,10 +185,3 @@ class _Judge:
             windows = eqx.tree_at(lambda w: (w.weight, w.drop), windows, (windows.weight / factor, windows.drop / factor))
         other = eqx.tree_at(lambda p: p.windows, problem, windows)
         return score(other, first_guess(other), layout, group=group)[0][0]
-
-
-def _unit(matrix: np.ndarray) -> np.ndarray:
-    size = np.sqrt(np.maximum(np.diag(matrix), 1e-300))
-    return matrix / np.outer(size, size)
-
-

@@ -85,7 +85,7 @@ def search(
         best = minimise(problem, best.value, ArrowLevenbergMarquardt())
         cost, steps = float(best.stats["cost"]), steps + int(best.stats["steps"])
     scale = np.sum(np.asarray(problem.directions), axis=0)
-    covariance = _inverse(np.asarray(best.stats["schur"])) * np.outer(scale, scale)
+    covariance = inverse_information(np.asarray(best.stats["schur"])) * np.outer(scale, scale)
     return Found(problem, best.value, covariance, cost, agreeing, tried, tied, steps)
 
 
@@ -171,7 +171,7 @@ def _search_held(
         residual = np.asarray(seen["predicted"].motion) - np.asarray(w.measured)
         excess = 2.0 * cost / count * correlation(residual, np.asarray(w.weight))
     scale = np.sum(np.asarray(problem.directions), axis=0)
-    covariance = excess * _inverse(np.asarray(seen["schur"])) * np.outer(scale, scale)
+    covariance = excess * inverse_information(np.asarray(seen["schur"])) * np.outer(scale, scale)
     return Found(tied, unknowns, covariance, cost, agreeing, len(tried), True, steps)
 
 
@@ -197,7 +197,8 @@ def freedom(unknowns: Unknowns, windows: Windows, *, tied: bool = False) -> floa
     return samples + moving - used * windows.intervals - starts * unknowns.starts.shape[0]
 
 
-def _inverse(schur: np.ndarray) -> np.ndarray:
+def inverse_information(schur: np.ndarray) -> np.ndarray:
+    """Covariance from information, (q, q): infinite for what shows nowhere, the pseudo-inverse for what only a sum determines."""
     scale = np.sqrt(np.maximum(np.diag(schur), 0.0))
     alive = scale > 0.0
     inverse = np.full(schur.shape, 0.0)
