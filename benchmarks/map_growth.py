@@ -1,13 +1,14 @@
 """How time and memory of a map grow with its cells and periods, with a verdict.
 
-    python -m benchmarks.map_growth [--tiny] [--largest 1024] [--rounds 3]
+    python -m benchmarks.map_growth [--tiny] [--largest 1024] [--rounds 4]
 
 Every size runs in a fresh process with a store of tiles and a netCDF written from it, so that its peak memory is its own. The
-time is that of the run and the file, after compiling, by the clock; the shortest of ``--rounds`` runs counts. Straight growth:
-no size is more than 20 per cent off the straight line through all of them, whose constant is what a map costs however small.
-A map of fewer tiles than cores leaves cores idle, which the table shows. Memory:
-twice the cells may cost no more than twice the memory and 20 per cent, and the largest map stays below `MEMORY`, whatever its
-file holds. Two quiet cores need four to six minutes; the machine should do nothing else.
+time is that of the run and the file, after compiling, by the clock. All sizes run one after the other, ``--rounds`` times
+over, and the shortest of each counts: a host that is slow for a minute slows one round of some sizes, not all rounds of one.
+Straight growth: no size is more than 20 per cent off the straight line through all of them, whose constant is what a map costs
+however small. A map of fewer tiles than cores leaves cores idle, which the table shows. Memory: twice the cells may cost no
+more than twice the memory and 20 per cent, and the largest map stays below `MEMORY`, whatever its file holds. Two quiet cores
+need five to eight minutes; the machine should do nothing else.
 """
 
 from __future__ import annotations
@@ -30,6 +31,8 @@ FEW = 40
 MEMORY = 1200.0
 """Most memory [MB] for a map of 1024 x 1024 cells with 16 samples each: the file alone holds 159 MB; the libraries take 500."""
 ROOM = 0.2
+Size = tuple[int, int, int]
+"""Rows, columns, periods."""
 
 
 def one(rows: int, columns: int, periods: int, folder: str) -> None:
@@ -64,17 +67,27 @@ def memory(name: str) -> float:
     return next(float(line.split()[1]) / 1024 for line in lines if line.startswith(name))
 
 
-def fresh(rows: int, columns: int, periods: int, rounds: int) -> dict[str, float]:
-    """What the quickest of some fresh processes told, with the largest of their peaks."""
-    told = []
+def fresh(rows: int, columns: int, periods: int) -> dict[str, float]:
+    """What a fresh process told."""
+    with tempfile.TemporaryDirectory() as folder:
+        words = [sys.executable, "-m", "benchmarks.map_growth", "--one", str(rows), str(columns), str(periods), folder]
+        done = subprocess.run(words, capture_output=True, text=True)
+    if done.returncode:
+        raise SystemExit(f"{rows} x {columns} cells, {periods} periods failed:\n{done.stderr}")
+    return dict(json.loads(done.stdout.splitlines()[-1]))
+
+
+def measured(sizes: list[Size], rounds: int) -> dict[Size, dict[str, float]]:
+    """Of every size what its quickest process told, with the largest of the peaks."""
+    told: dict[Size, list[dict[str, float]]] = {size: [] for size in sizes}
     for _ in range(rounds):
-        with tempfile.TemporaryDirectory() as folder:
-            words = [sys.executable, "-m", "benchmarks.map_growth", "--one", str(rows), str(columns), str(periods), folder]
-            done = subprocess.run(words, capture_output=True, text=True)
-        if done.returncode:
-            raise SystemExit(f"{rows} x {columns} cells, {periods} periods failed:\n{done.stderr}")
-        told.append(json.loads(done.stdout.splitlines()[-1]))
-    return min(told, key=lambda one: one["s"]) | {"MB": max(one["MB"] for one in told)}
+        for size in told:
+            told[size].append(fresh(*size))
+    return {
+        size: min(runs, key=lambda one: one["s"])
+        | {"MB": max(one["MB"] for one in runs), "slowest": max(one["s"] for one in runs)}
+        for size, runs in told.items()
+    }
 
 
 def straight(size: np.ndarray, spent: np.ndarray) -> tuple[float, float, np.ndarray]:
@@ -90,16 +103,14 @@ def growth(memory: np.ndarray, size: np.ndarray) -> float:
     return float(np.max((memory[1:] / memory[:-1]) / (size[1:] / size[:-1]))) if size.size > 1 else 1.0
 
 
-def table(head: str, sizes: list[tuple[int, int, int]], rounds: int) -> list[dict[str, float]]:
+def table(head: str, sizes: list[Size], told: dict[Size, dict[str, float]]) -> None:
     """Time and memory of every size, and the verdict on how they grow."""
-    print(f"\n{head}\n      cells  periods        s  cores   ns a cell and period     peak MB")
-    rows = []
-    for shape in sizes:
-        found, work = fresh(*shape, rounds), float(np.prod(shape))
-        rows.append(found | {"work": work})
-        each = 1e9 * found["s"] / work
-        told = f"{found['s']:9.2f}{found['cores']:7.0f}{each:23.0f}{found['MB']:12.0f}"
-        print(f"  {shape[0] * shape[1]:9d}{shape[2]:9d}{told}", flush=True)
+    print(f"\n{head}\n      cells  periods        s  slowest  cores   ns a cell and period     peak MB")
+    rows = [told[size] | {"work": float(np.prod(size))} for size in sizes]
+    for size, row in zip(sizes, rows):
+        each = 1e9 * row["s"] / row["work"]
+        seen = f"{row['s']:9.2f}{row['slowest']:9.2f}{row['cores']:7.0f}{each:23.0f}{row['MB']:12.0f}"
+        print(f"  {size[0] * size[1]:9d}{size[2]:9d}{seen}")
     if len(rows) > 2:
         work, spent = (np.array([row[k] for row in rows]) for k in ("work", "s"))
         constant, slope, misfit = straight(work, spent)
@@ -108,7 +119,6 @@ def table(head: str, sizes: list[tuple[int, int, int]], rounds: int) -> list[dic
               f"at most (wanted 20 %): {verdict(worst <= ROOM)}")  # fmt: skip
         faster = growth(np.array([row["MB"] for row in rows]), work)
         print(f"  memory grows {faster:.2f} times as fast as the size at most (wanted 1.2): {verdict(faster <= 1.0 + ROOM)}")
-    return rows
 
 
 def verdict(met: bool) -> str:
@@ -119,7 +129,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--tiny", action="store_true", help="a few small sizes")
     parser.add_argument("--largest", type=int, default=ROWS[-1], help="rows and columns of the largest map")
-    parser.add_argument("--rounds", type=int, default=3, help="runs of every size; the shortest counts")
+    parser.add_argument("--rounds", type=int, default=4, help="runs of every size; the shortest counts")
     parser.add_argument("--one", nargs=4, help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.one:
@@ -127,12 +137,14 @@ def main() -> None:
         return one(rows, columns, periods, given.one[3])
     begun = time.perf_counter()
     side, rounds = (32, 1) if given.tiny else (64, given.rounds)
-    shapes = [(rows, rows, FEW) for rows in ROWS if rows <= (side if given.tiny else given.largest)]
-    found = table("against cells", shapes, rounds)
-    peak, side_by_side = found[-1]["MB"], f"{shapes[-1][0]} x {shapes[-1][0]}"
-    print(f"  {side_by_side} cells: peak {peak:.0f} MB, {peak - found[-1]['before']:.0f} MB of it for the map "
-          f"(wanted below {MEMORY:.0f} MB in all): {verdict(peak < MEMORY)}")  # fmt: skip
-    table("against periods", [(side, side, count) for count in (PERIODS[:1] if given.tiny else PERIODS)], rounds)
+    wide = [(rows, rows, FEW) for rows in ROWS if rows <= (side if given.tiny else given.largest)]
+    long = [(side, side, count) for count in (PERIODS[:1] if given.tiny else PERIODS)]
+    told = measured([*wide, *long], rounds)
+    table("against cells", wide, told)
+    largest, side_by_side = told[wide[-1]], f"{wide[-1][0]} x {wide[-1][0]}"
+    print(f"  {side_by_side} cells: peak {largest['MB']:.0f} MB, {largest['MB'] - largest['before']:.0f} MB of it for the map "
+          f"(wanted below {MEMORY:.0f} MB in all): {verdict(largest['MB'] < MEMORY)}")  # fmt: skip
+    table("against periods", long, told)
     print(f"\n{time.perf_counter() - begun:.0f} s in all")
 
 
