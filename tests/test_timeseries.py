@@ -25,6 +25,7 @@ from jaxbacklash.timeseries import (
 from jaxbacklash.timeseries.analyse import _drive_period
 from jaxbacklash.timeseries.force_surface import WeakForm, bent_edges
 from jaxbacklash.timeseries.neighbours import nearest, references
+from jaxbacklash.timeseries.noise_reduction import widest
 from jaxbacklash.timeseries.region import straight_part
 from jaxbacklash.timeseries.stationarity import kept_company
 from jaxbacklash.timeseries.surrogates import matched_ends
@@ -486,3 +487,14 @@ def test_verdicts_over_many_seeds():
     )
     assert false == 0
     assert found >= 7
+
+
+def test_the_widest_directions_are_those_of_the_largest_eigenvalues():
+    rng = np.random.default_rng(3)
+    axes = np.linalg.qr(rng.standard_normal((200, 15, 15)))[0]
+    variances = np.concatenate([np.geomspace(1e4, 1.0, 4), np.full(11, 0.1)]) * rng.uniform(0.9, 1.1, (200, 15))
+    basis = widest(axes @ (variances[:, :, None] * axes.transpose(0, 2, 1)), 4)
+    np.testing.assert_allclose(basis.transpose(0, 2, 1) @ basis, np.broadcast_to(np.eye(4), (200, 4, 4)), atol=1e-12)
+    wanted = axes[:, :, :4]
+    np.testing.assert_allclose(basis @ basis.transpose(0, 2, 1), wanted @ wanted.transpose(0, 2, 1), atol=1e-6)
+    assert np.all(widest(np.zeros((2, 5, 5)), 2) == 0.0)

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .embedding import embed
+from .embedding import embed, vectors
 from .neighbours import references
 from .region import POINTS, Region
+from .side_by_side import side_by_side
 
 REFERENCES = 600
 TARGETS = 20000
@@ -53,22 +54,26 @@ def correlation(
     rng : chooses reference points, and targets of a series with more than `TARGETS`
     """
     radii = np.geomspace(0.005, 3.0, RADII)
-    sums, told, used = [], [], []
+    asked = []
     for m in dimensions:
-        points = embed(series, m, delay)
-        if len(points) < 4 * theiler + 200:
+        count = vectors(series.size, m, delay)
+        if count < 4 * theiler + 200:
             break
-        at = references(len(points), REFERENCES, rng)
-        to = references(len(points), TARGETS, rng)
+        asked.append((m, references(count, REFERENCES, rng), references(count, TARGETS, rng)))
+
+    def counted(one: tuple[int, np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        m, at, to = one
+        points = embed(series, m, delay)
         counts = cKDTree(points[at]).count_neighbors(cKDTree(points[to]), radii).astype(float)
         close, excluded = _close_in_time(points, at, to, theiler, radii)
         pairs = at.size * to.size - excluded
         share = np.maximum(counts - close, 0.0) / pairs
-        sums.append(share)
-        used.append(m)
-        told.append((share * pairs > LEAST_PAIRS) & (share < LARGEST))
-    regions, value, spread, why = _plateau(np.log(radii), np.array(sums), np.array(told))
-    return Correlation(np.array(used), radii, np.array(sums), regions, value, spread, why)
+        return share, (share * pairs > LEAST_PAIRS) & (share < LARGEST)
+
+    found = side_by_side(counted, asked)
+    sums, told = np.array([share for share, _ in found]), np.array([enough for _, enough in found])
+    regions, value, spread, why = _plateau(np.log(radii), sums, told)
+    return Correlation(np.array([m for m, *_ in asked]), radii, sums, regions, value, spread, why)
 
 
 def _plateau(

@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 
 from .embedding import embed
 from .neighbours import nearest, references
+from .side_by_side import side_by_side
 
 LARGEST = 10
 REFERENCES = 2000
@@ -53,10 +54,10 @@ def embedding_dimension(
     deviation = float(series.std())
     while series.size - (largest + 1) * delay < 50 + 2 * theiler and largest > 2:
         largest -= 1
-    e, star, false = [], [], []
-    for d in range(1, largest + 2):
+
+    def judged(asked: tuple[int, np.ndarray]) -> tuple[float, float, float]:
+        d, at = asked
         points = embed(series, d, delay)[: series.size - d * delay]
-        at = references(len(points), REFERENCES, rng)
         apart, where = nearest(cKDTree(points), points[at], at, 2, theiler, p=np.inf)
         # Equal vectors (an encoder's counts) have no ratio of distances; the next neighbour stands in.
         zero = apart[:, 0] <= 0.0
@@ -64,10 +65,14 @@ def embedding_dimension(
         used = (where >= 0) & (apart > 0.0) & np.isfinite(apart)
         at, apart, where = at[used], apart[used], where[used]
         step = np.abs(series[at + d * delay] - series[where + d * delay])
-        e.append(float(np.mean(np.maximum(step, apart) / apart)) if at.size else 1.0)
-        star.append(float(np.mean(step)))
+        if not at.size:
+            return 1.0, float("nan"), 0.0
         further = np.hypot(np.sqrt(np.sum((points[at] - points[where]) ** 2, axis=1)), step)
-        false.append(float(np.mean((step / apart > RATIO) | (further / deviation > SIZE))) if at.size else 0.0)
+        false = np.mean((step / apart > RATIO) | (further / deviation > SIZE))
+        return float(np.mean(np.maximum(step, apart) / apart)), float(np.mean(step)), float(false)
+
+    tried = range(1, largest + 2)
+    e, star, false = zip(*side_by_side(judged, [(d, references(series.size - d * delay, REFERENCES, rng)) for d in tried]))
     dimensions = np.arange(1, largest + 1)
     e_, star_ = np.array(e), np.maximum(np.array(star), 1e-300)
     e1, e2 = e_[1:] / e_[:-1], star_[1:] / star_[:-1]

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .tangent import Growth, LocalMap, growth, scan
+from .side_by_side import side_by_side
+from .tangent import CHAIN, Growth, LocalMap, growth, scan
 
 AS_GOOD = 1.5  # maps whose prediction error is within this factor of the best also count
 MODELS = 4
@@ -60,13 +61,11 @@ def largest_exponent(series: np.ndarray, delay: int, theiler: int, rng: np.rando
     used = (firsts + [one for one in near if one not in firsts])[:MODELS]
     if best.error > PREDICTS:
         used = used[:1]
-    grown = growth(series, delay, theiler, best, rng)
     # The others are compared with the best over the same shorter stretches, in which their sampling errors cancel.
-    differences = [0.0]
-    if len(used) > 1:
-        same = growth(series, delay, theiler, best, rng, SHORT_CHAIN).exponent
-        differences += [growth(series, delay, theiler, one, rng, SHORT_CHAIN).exponent - same for one in used[1:]]
-    values = grown.exponent + np.array(differences)
+    chains = [(best, CHAIN)] + ([(one, SHORT_CHAIN) for one in used] if len(used) > 1 else [])
+    told = lambda asked: growth(series, delay, theiler, asked[0][0], asked[1], asked[0][1])  # noqa: E731
+    grown, *short = side_by_side(told, zip(chains, rng.spawn(len(chains))))
+    values = grown.exponent + np.array([one.exponent - short[0].exponent for one in short] or [0.0])
     weights = np.array([(best.error / max(one.error, 1e-12)) ** 2 for one in used])
     weights /= weights.sum()
     value = float(weights @ values)

@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 from scipy.special import digamma
 
 from .scales import correlation_time, mean_period
+from .side_by_side import side_by_side
 
 NEIGHBOURS = 6
 PAIRS = 3000  # pairs of samples a lag is judged by
@@ -71,11 +72,10 @@ def choose_delay(series: np.ndarray, rng: np.random.Generator) -> Delay:
     longest = max(4, min(series.size // 20, int(max(period, 2 * memory)) if memory > 1 else 12))
     lags = np.unique(np.round(np.linspace(1, longest, min(LAGS, longest))).astype(int))
     parted = _parted(series, rng)
-    information = np.empty(lags.size)
-    for k, lag in enumerate(lags):
-        starts = series.size - lag
-        chosen = np.arange(starts) if starts <= PAIRS else rng.choice(starts, PAIRS, replace=False)
-        information[k] = mutual_information(parted[chosen], parted[chosen + lag])
+    starts = series.size - lags
+    pairs = [(np.arange(n) if n <= PAIRS else rng.choice(n, PAIRS, replace=False), lag) for n, lag in zip(starts, lags)]
+    told = lambda pair: mutual_information(parted[pair[0]], parted[pair[0] + pair[1]])  # noqa: E731
+    information = np.array(side_by_side(told, pairs))
     if memory <= 1:
         return Delay(1, "the autocorrelation is gone after one sample", lags, information)
     smooth = information

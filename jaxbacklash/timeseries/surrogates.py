@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from .embedding import embed
 from .neighbours import nearest, references
+from .side_by_side import side_by_side
 from .tangent import fit_maps
 
 ITERATIONS = 60
@@ -117,7 +118,7 @@ def surrogate_test(
     made = KINDS[kind](series, count, rng)
     at = references(series.size - dimension * delay, REFERENCES, rng)
     near = 6 * dimension + 6
-    own, *others = (_error(one, dimension, delay, theiler, at, near) for one in (series, *made))
+    own, *others = side_by_side(lambda one: _error(one, dimension, delay, theiler, at, near), (series, *made))
     values = np.array(others)
     p = (1.0 + np.sum(values <= own)) / (count + 1.0)
     return SurrogateTest(kind, count, own, values, float(p), series.size)

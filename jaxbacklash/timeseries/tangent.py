@@ -15,12 +15,14 @@ from scipy.spatial import cKDTree
 
 from .embedding import embed
 from .neighbours import nearest, references
+from .side_by_side import side_by_side
 
 COUNTS = (12, 20, 35, 60, 110, 200)  # neighbours tried
 SCAN = 600  # reference points the choice is made on
 CHAIN = 12000  # points through which a difference is carried, at most
 BLOCK = 1024
 SINGULAR = 0.02  # directions that the neighbours span less than this share of the widest one are not fitted
+VANISHED = 1e-9  # a map that keeps nothing of a difference says nothing: begin anew
 SETTLING = 10  # maps after which a difference points in the most unstable direction
 
 
@@ -58,24 +60,27 @@ def scan(series: np.ndarray, delay: int, theiler: int, dimensions: range, rng: n
     dimensions : numbers of coordinates to try
     rng : chooses the points judged
     """
-    found = []
+    asked = []
     for m in dimensions:
-        points = embed(series, m, delay)
-        usable = len(points) - delay
-        if usable < 20 * m + 4 * theiler + 50:
-            break
-        tree = cKDTree(points[:usable])
-        at = references(usable, SCAN, rng)
+        usable = series.size - m * delay
         counts = [count for count in COUNTS if 2 * m + 3 <= count <= usable // 8]
-        if not counts:
+        if usable < 20 * m + 4 * theiler + 50 or not counts:
             break
+        asked.append((m, counts, references(usable, SCAN, rng)))
+
+    def judged(one: tuple[int, list[int], np.ndarray]) -> list[LocalMap]:
+        m, counts, at = one
+        points, found = embed(series, m, delay), []
+        tree = cKDTree(points[: series.size - m * delay])
         _, where = nearest(tree, points[at], at, counts[-1], theiler)
         for count in counts:
             enough = where[:, count - 1] >= 0
             _, predicted = fit_maps(points, at[enough], where[enough, :count], delay)
             missed = predicted - points[at[enough] + delay, -1]
             found.append(LocalMap(m, count, float(np.sqrt(np.mean(missed**2))), float(np.median(np.abs(missed)))))
-    return sorted(found, key=lambda one: one.error)
+        return found
+
+    return sorted((found for each in side_by_side(judged, asked) for found in each), key=lambda one: one.error)
 
 
 def growth(
@@ -108,23 +113,26 @@ def growth(
         chains, length = 12, chain // 12
         first = np.linspace(0, usable - length * delay, chains).astype(int)
     at = (first[None, :] + delay * np.arange(length)[:, None]).ravel()
-    maps = np.empty((at.size, chosen.dimension, chosen.dimension))
-    for begin in range(0, at.size, BLOCK):
+
+    def fitted(begin: int) -> np.ndarray:
         here = at[begin : begin + BLOCK]
         _, where = nearest(tree, points[here], here, chosen.neighbours, theiler)
         # A point with too few neighbours outside the window repeats the ones it has.
         where = np.where(where < 0, where[:, :1], where)
-        maps[begin : begin + BLOCK], _ = fit_maps(points, here, where, delay)
+        return fit_maps(points, here, where, delay)[0]
+
+    maps = np.concatenate(side_by_side(fitted, range(0, at.size, BLOCK)))
     steps_of = maps.reshape(length, chains, chosen.dimension, chosen.dimension)
     direction = rng.standard_normal((chains, chosen.dimension))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-    rates = np.zeros((length, chains))
-    for k in range(length):
-        direction = (steps_of[k] @ direction[:, :, None])[:, :, 0]
-        grown = np.linalg.norm(direction, axis=1)
-        lost = grown < 1e-9  # a map that keeps nothing says nothing: begin anew
-        rates[k] = np.where(lost, 0.0, np.log(np.maximum(grown, 1e-9)))
-        direction = np.where(lost[:, None], 1.0 / np.sqrt(chosen.dimension), direction / np.maximum(grown, 1e-9)[:, None])
+    grown = np.empty((length, chains))
+    for k, step in enumerate(steps_of):
+        direction = (step @ direction[:, :, None])[:, :, 0]
+        grown[k] = size = np.sqrt(np.einsum("cm,cm->c", direction, direction))
+        direction = direction / np.maximum(size, VANISHED)[:, None]
+        if size.min() < VANISHED:
+            direction[size < VANISHED] = 1.0 / np.sqrt(chosen.dimension)
+    rates = np.log(np.where(grown < VANISHED, 1.0, grown))
     return Growth(chosen, rates[min(SETTLING, length // 4) :].T / delay)
 
 
