@@ -25,7 +25,7 @@ from jaxbacklash.timeseries import (
 from jaxbacklash.timeseries.analyse import _drive_period
 from jaxbacklash.timeseries.force_surface import WeakForm, bent_edges
 from jaxbacklash.timeseries.neighbours import nearest, references
-from jaxbacklash.timeseries.noise_reduction import widest
+from jaxbacklash.timeseries.planes import widest
 from jaxbacklash.timeseries.region import straight_part
 from jaxbacklash.timeseries.stationarity import kept_company
 from jaxbacklash.timeseries.surrogates import matched_ends
