@@ -15,7 +15,7 @@ import numpy as np
 from .. import __version__
 from ..dynamics.family import CASES, PaperCase
 from ..dynamics.follow import trace_exact
-from ..dynamics.labels import is_large, need_dask_array, need_h5netcdf, need_xarray, write_netcdf
+from ..dynamics.labels import need_dask_array, need_h5netcdf, need_xarray, write_netcdf
 from ..dynamics.maps import Request, request, run_map
 from ..dynamics.tiles import need_zarr
 from ..errors import BadInput
@@ -79,10 +79,9 @@ def compile_beside_imports(wanted: Request, aside: ThreadPoolExecutor) -> None:
     """
     compile_exact = trace_exact(int(np.prod(wanted.tile)), wanted.plan)
     compiling = aside.submit(compile_exact)
-    for need in (need_zarr, need_xarray, need_h5netcdf):
+    # xarray asks for dask's arrays, and they for scipy, with the first array it labels, whether they are used or not.
+    for need in (need_zarr, need_dask_array, need_xarray, need_h5netcdf):
         need()
-    if is_large(wanted):
-        need_dask_array()
     from ..report import map_report as map_report
     compiling.result()
 
