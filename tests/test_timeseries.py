@@ -498,3 +498,14 @@ def test_the_widest_directions_are_those_of_the_largest_eigenvalues():
     wanted = axes[:, :, :4]
     np.testing.assert_allclose(basis @ basis.transpose(0, 2, 1), wanted @ wanted.transpose(0, 2, 1), atol=1e-6)
     assert np.all(widest(np.zeros((2, 5, 5)), 2) == 0.0)
+
+
+def test_noise_is_taken_off_where_an_encoder_stands_still():
+    """Hundreds of vectors are equal there, and none need be its own neighbour."""
+    t = np.arange(4000)
+    moves, noise = t % 1000 < 600, 0.01 * np.random.default_rng(4).standard_normal(t.size)
+    moving = np.where(moves, np.sin(2 * np.pi * t / 50.0) + noise, 0.0)
+    seen = np.round(moving / 0.02) * 0.02
+    cleaned = projective(seen, window=15, delay=1, kept=3)
+    assert np.all(np.isfinite(cleaned.series))
+    assert np.sqrt(np.mean((cleaned.series - seen) ** 2)) < 0.02

@@ -63,7 +63,11 @@ def largest_exponent(series: np.ndarray, delay: int, theiler: int, rng: np.rando
         used = used[:1]
     # The others are compared with the best over the same shorter stretches, in which their sampling errors cancel.
     chains = [(best, CHAIN)] + ([(one, SHORT_CHAIN) for one in used] if len(used) > 1 else [])
-    told = lambda asked: growth(series, delay, theiler, asked[0][0], asked[1], asked[0][1])  # noqa: E731
+
+    def told(asked: tuple[tuple[LocalMap, int], np.random.Generator]) -> Growth:
+        (chosen, chain), own = asked
+        return growth(series, delay, theiler, chosen, own, chain)
+
     grown, *short = side_by_side(told, zip(chains, rng.spawn(len(chains))))
     values = grown.exponent + np.array([one.exponent - short[0].exponent for one in short] or [0.0])
     weights = np.array([(best.error / max(one.error, 1e-12)) ** 2 for one in used])

@@ -48,6 +48,17 @@ class Cleaned:
     why_untouched: str | None = None
 
 
+@dataclass(frozen=True, eq=False)
+class Neighbourhoods:
+    """Vectors that are projected, ``taken`` (R,) of (M,), the neighbours ``near`` (R, q) of each, itself first, and two averages
+    over them: ``mean`` (R, M) over all, ``mean_of_taken`` (R, R) over those that are taken."""
+
+    taken: np.ndarray
+    near: np.ndarray
+    mean: csr_array
+    mean_of_taken: csr_array
+
+
 def simple(
     series: np.ndarray, *, window: int, delay: int = 1, radius: float | None = None, iterations: int = ITERATIONS
 ) -> Cleaned:
@@ -119,10 +130,10 @@ def projective(
         return Cleaned(series.copy(), 0.0, noise, None, window, delay, 0, "projective", why)
     # The floor hides the weakest direction of the motion, so one more is tried too, and what gains more on a part is taken.
     part = series[:GAIN_SAMPLES]
-    near = _neighbours(embed(part, window, delay), delay)
+    around = _neighbourhoods(embed(part, window, delay), delay)
 
     def tried(directions: int) -> tuple[np.ndarray, float | None]:
-        done = _rounds(part, window, delay, directions, iterations, near)
+        done = _rounds(part, window, delay, directions, iterations, around)
         return done, _gain(done, noise, window, delay, directions, iterations)
 
     if progress is not None:
@@ -144,14 +155,14 @@ def _why_untouched(noise: float, series: np.ndarray) -> str | None:
 
 
 def _rounds(
-    series: np.ndarray, window: int, delay: int, kept: int, iterations: int, near: np.ndarray | None = None
+    series: np.ndarray, window: int, delay: int, kept: int, iterations: int, around: Neighbourhoods | None = None
 ) -> np.ndarray:
     """Some rounds of projection. Who is near whom is asked once: neighbours of the noisy vectors remain neighbours, and the gain
     is the same as with a search in each round, to a tenth of a dB."""
-    near = _neighbours(embed(series, window, delay), delay) if near is None else near
+    around = around or _neighbourhoods(embed(series, window, delay), delay)
     present, planes = series, None
     for _ in range(iterations):
-        present, planes = _projected(present, window, delay, kept, near, planes)
+        present, planes = _projected(present, window, delay, kept, around, planes)
     return present
 
 
@@ -173,30 +184,22 @@ def _rms(values: np.ndarray) -> float:
 
 
 def _projected(
-    series: np.ndarray, window: int, delay: int, kept: int, near: np.ndarray, planes: np.ndarray | None
+    series: np.ndarray, window: int, delay: int, kept: int, around: Neighbourhoods, planes: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """One round of projection, with the neighbours ``near`` (R, q) of each vector that is taken and the planes (R, window, kept)
-    of the round before; also tells the planes."""
-    points, count = embed(series, window, delay), near.shape[1]
-    taken = _taken(len(points), window, delay)
-    vectors = points[taken]
-    ends = np.arange(0, near.size + 1, count)
-    centres = csr_array((np.full(near.size, 1.0 / count), near.ravel(), ends), (len(near), len(points))) @ points
-    # Neighbourhoods of the neighbours' centres, for the curvature of the surface (Kantz and Schreiber, 10.3).
-    row = np.full(len(points), -1)
-    row[taken] = np.arange(taken.size)
-    among = row[near]
-    known = (among >= 0).astype(float)
-    known /= known.sum(axis=1, keepdims=True)  # each is among its own
-    middles = 2.0 * centres - csr_array((known.ravel(), np.maximum(among, 0).ravel(), ends), (len(near),) * 2) @ centres
+    """One round of projection, with the planes (R, window, kept) of the round before; also tells the planes."""
+    points, near = embed(series, window, delay), around.near
+    vectors, count = points[around.taken], near.shape[1]
+    centres = around.mean @ points
+    # The mean of the neighbours' centres, for the curvature of the surface (Kantz and Schreiber, 10.3).
+    middles = 2.0 * centres - around.mean_of_taken @ centres
     weights = np.ones(window)
     weights[[0, -1]] = END_WEIGHT
     root = np.sqrt(weights)
 
     def step(begin: int) -> tuple[np.ndarray, np.ndarray]:
         rows = slice(begin, begin + BLOCK)
-        around, centre = points[near[rows]], centres[rows]
-        spread = around.transpose(0, 2, 1) @ around - count * centre[:, :, None] * centre[:, None, :]
+        neighbours, centre = points[near[rows]], centres[rows]
+        spread = neighbours.transpose(0, 2, 1) @ neighbours - count * centre[:, :, None] * centre[:, None, :]
         plane = widest(spread * root * root[:, None], kept, None if planes is None else planes[rows])
         off = ((middles[rows] - vectors[rows]) * root)[:, :, None]
         return (off - plane @ (plane.transpose(0, 2, 1) @ off))[:, :, 0] / root, plane
@@ -204,27 +207,33 @@ def _projected(
     steps, found = (np.concatenate(parts) for parts in zip(*side_by_side(step, range(0, len(near), BLOCK))))
     correction, times = np.zeros(series.size), np.zeros(series.size)
     for place in range(window):
-        at = taken + place * delay
+        at = around.taken + place * delay
         correction[at] += steps[:, place] / weights[place]
         times[at] += 1.0 / weights[place]
     return series + correction / np.maximum(times, 1e-300), found
 
 
-def _neighbours(points: np.ndarray, delay: int) -> np.ndarray:
-    """Indices (R, q) of the nearest neighbours of each point that is taken, itself among them."""
-    count = min(NEIGHBOURS + 1, len(points))
-    taken = _taken(len(points), points.shape[1], delay)
-    return cKDTree(points).query(points[taken], k=count, workers=cores())[1].astype(np.int32)
+def _neighbourhoods(points: np.ndarray, delay: int) -> Neighbourhoods:
+    """Who is near whom among the points (M, window).
+
+    Every second vector is taken where each sample still belongs to `ENOUGH` of them, which halves the time and costs a quarter of
+    a dB; else all are.
+    """
+    number, count = np.arange(len(points)), min(NEIGHBOURS + 1, len(points))
+    taken = number[number // delay % 2 == 0] if points.shape[1] >= 2 * ENOUGH else number
+    near = cKDTree(points).query(points[taken], k=count, workers=cores())[1].astype(np.int32)
+    near[:, 0] = taken  # of more equal vectors than are asked for, as from an encoder at rest, any could have come first
+    row = np.full(len(points), -1)
+    row[taken] = np.arange(taken.size)
+    among, ends = row[near], np.arange(0, near.size + 1, count)
+    share = (among >= 0) / np.sum(among >= 0, axis=1, keepdims=True)
+    return Neighbourhoods(
+        taken, near, csr_array((np.full(near.size, 1.0 / count), near.ravel(), ends), (taken.size, number.size)),
+        csr_array((share.ravel(), np.maximum(among, 0).ravel(), ends), (taken.size, taken.size)),
+    )  # fmt: skip
 
 
-def _taken(points: int, window: int, delay: int) -> np.ndarray:
-    """Which vectors are projected: every second one where each sample still belongs to `ENOUGH`, which takes half the time and
-    costs a quarter of a dB; else all."""
-    number = np.arange(points)
-    return number[number // delay % 2 == 0] if window >= 2 * ENOUGH else number
-
-
-def _floor(series: np.ndarray, window: int, delay: int, kept: int | None = None, looked_at: int = 1500) -> tuple[float, int]:
+def _floor(series: np.ndarray, window: int, delay: int, looked_at: int = 1500) -> tuple[float, int]:
     """Noise level and number of directions of the motion, from the variances of neighbourhoods.
 
     The median neighbourhood's variances, sorted, fall to a floor where only noise is left; its height is the noise.
@@ -238,5 +247,5 @@ def _floor(series: np.ndarray, window: int, delay: int, kept: int | None = None,
     typical = np.median(values, axis=0)[::-1]
     floor = float(np.median(typical[window // 2 :]))
     found = int(np.sum(typical > ABOVE_FLOOR * floor))
-    found = min(max(found, 1), window // 2) if kept is None else kept
+    found = min(max(found, 1), window // 2)
     return float(np.sqrt(max(np.mean(typical[found:]), 0.0))), found
