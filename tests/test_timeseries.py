@@ -23,8 +23,10 @@ from jaxbacklash.timeseries import (
     zero_one,
 )
 from jaxbacklash.timeseries.analyse import _drive_period
+from jaxbacklash.timeseries.embedding import embed
 from jaxbacklash.timeseries.force_surface import WeakForm, bent_edges
 from jaxbacklash.timeseries.neighbours import nearest, references
+from jaxbacklash.timeseries.noise_reduction import _neighbourhoods
 from jaxbacklash.timeseries.planes import widest
 from jaxbacklash.timeseries.region import straight_part
 from jaxbacklash.timeseries.stationarity import kept_company
@@ -506,6 +508,9 @@ def test_noise_is_taken_off_where_an_encoder_stands_still():
     moves, noise = t % 1000 < 600, 0.01 * np.random.default_rng(4).standard_normal(t.size)
     moving = np.where(moves, np.sin(2 * np.pi * t / 50.0) + noise, 0.0)
     seen = np.round(moving / 0.02) * 0.02
+    around = _neighbourhoods(embed(seen, 15, 1), 1)
+    np.testing.assert_array_equal(around.near[:, 0], around.taken)
+    np.testing.assert_allclose(around.mean_of_taken.sum(axis=1), 1.0)
     cleaned = projective(seen, window=15, delay=1, kept=3)
     assert np.all(np.isfinite(cleaned.series))
     assert np.sqrt(np.mean((cleaned.series - seen) ** 2)) < 0.02
