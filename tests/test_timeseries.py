@@ -23,7 +23,6 @@ from jaxbacklash.timeseries import (
     zero_one,
 )
 from jaxbacklash.timeseries.analyse import _drive_period
-from jaxbacklash.timeseries.embedding import embed
 from jaxbacklash.timeseries.force_surface import WeakForm, bent_edges
 from jaxbacklash.timeseries.neighbours import nearest, references
 from jaxbacklash.timeseries.noise_reduction import _neighbourhoods
