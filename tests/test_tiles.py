@@ -15,7 +15,7 @@ pytest.importorskip("xarray")
 
 from jaxbacklash.dynamics.family import PaperCase
 from jaxbacklash.dynamics.labels import write_netcdf
-from jaxbacklash.dynamics.maps import request, run_map
+from jaxbacklash.dynamics.maps import labelled_map, request, run_map
 from jaxbacklash.dynamics.tiles import TileStore
 from jaxbacklash.errors import BadInput
 
@@ -63,6 +63,14 @@ def test_a_store_goes_into_its_file_some_chunks_at_a_time(tmp_path, monkeypatch,
     write_netcdf(stored, tmp_path / "map.nc")
     with xarray.open_dataset(tmp_path / "map.nc", engine="h5netcdf") as found:
         assert same(stored, found)
+    bare = labelled_map(small(lanes=8), store=tmp_path / "store")  # as the command does, without xarray
+    write_netcdf(bare, tmp_path / "bare.nc")
+    with xarray.open_dataset(tmp_path / "bare.nc", engine="h5netcdf") as found:
+        assert same(stored, found)
+        assert found.attrs.keys() == stored.attrs.keys()
+        assert found.zeta.attrs == stored.zeta.attrs
+    np.testing.assert_array_equal(bare.loaded().values("lyapunov", {"zeta": 1}), stored.lyapunov[:, 1])
+    np.testing.assert_array_equal(bare.values("poincare", {"inverse_alpha": 0}), stored.poincare[:, 0])
 
 
 def test_tiles_do_not_depend_on_their_size_beyond_rounding(whole):

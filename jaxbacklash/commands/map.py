@@ -15,8 +15,8 @@ import numpy as np
 from .. import __version__
 from ..dynamics.family import CASES, PaperCase
 from ..dynamics.follow import trace_exact
-from ..dynamics.labels import need_dask_array, need_h5netcdf, need_xarray, write_netcdf
-from ..dynamics.maps import Request, request, run_map
+from ..dynamics.labels import need_h5netcdf, write_netcdf
+from ..dynamics.maps import Request, labelled_map, request
 from ..dynamics.tiles import need_zarr
 from ..errors import BadInput
 from .common import json_text, progress
@@ -47,10 +47,9 @@ def run(
         tell("compiling", 0.0)
         compile_beside_imports(wanted, aside)
         compiled = time.perf_counter()
-        map_ = run_map(wanted, store=store, progress=tell)
+        map_ = labelled_map(wanted, store=store, progress=tell)
         computed = time.perf_counter()
-        # All but the samples, of which the page shows one cut: a large map's would not fit.
-        drawn = map_.drop_vars("poincare").load().assign(poincare=map_["poincare"])
+        drawn = map_.loaded()
         writing = aside.submit(write_netcdf, map_, out)
         result: dict[str, Any] = {
             "schema": 1, "command": "map", "version": __version__, "case": case, "cells": wanted.cells, "periods": periods,
@@ -79,9 +78,8 @@ def compile_beside_imports(wanted: Request, aside: ThreadPoolExecutor) -> None:
     """
     compile_exact = trace_exact(int(np.prod(wanted.tile)), wanted.plan)
     compiling = aside.submit(compile_exact)
-    # xarray asks for dask's arrays, and they for scipy, with the first array it labels, whether they are used or not.
-    for need in (need_zarr, need_dask_array, need_xarray, need_h5netcdf):
-        need()
+    need_zarr()
+    need_h5netcdf()
     from ..report import map_report as map_report
     compiling.result()
 
@@ -136,12 +134,12 @@ def read_start(text: str) -> tuple[float, float]:
 
 def counts(map_: Any) -> dict[str, Any]:
     """How many cells are chaotic, periodic and undecided, and the largest exponent."""
-    period, exponent = map_["period"].values, map_["lyapunov"].values
+    period, exponent = map_.values("period"), map_.values("lyapunov")
     known = exponent[np.isfinite(exponent)]
     found, number = np.unique(period[period > 0], return_counts=True)
     return {
         "chaotic": int((period == 0).sum()), "unsettled": int((period == -1).sum()),
-        "unresolved": int(map_["unresolved"].values.sum()),
+        "unresolved": int(map_.values("unresolved").sum()),
         "by_period": {str(int(T)): int(n) for T, n in zip(found, number)},
         "largest_exponent": {
             "value": float(known.max()) if known.size else None, "unit": "1/tau",

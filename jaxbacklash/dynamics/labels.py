@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from itertools import pairwise, product
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -52,23 +53,50 @@ def need_dask_array() -> Any:
     return dask.array
 
 
-def dataset(wanted: Request, kept: MemoryTiles) -> Any:
-    """A map in memory as a Dataset."""
-    return _labelled(wanted, kept.arrays, kept.solvers)
+class Variable(NamedTuple):
+    """Numbers with the names of their dimensions, in memory or in a store's array, which is read where it is indexed."""
+
+    dims: tuple[str, ...]
+    data: Any
+    attrs: dict[str, Any]
 
 
-def dataset_from_store(wanted: Request, kept: TileStore) -> Any:
-    """A map in a store as a Dataset; arrays of more than `ROOM` numbers are read from the tiles when they are needed."""
-    if not is_large(wanted):
-        return _labelled(wanted, {name: part[...] for name, part in kept.arrays.items()}, kept.solvers)
-    da = need_dask_array()
-    # Names of our own: dask's would depend on the folder, and with them the order in which a file is written.
+class Labelled(NamedTuple):
+    """A map with its labels, of which `dataset` makes xarray's: that library, with those it loads, takes a second to come."""
+
+    variables: dict[str, Variable]
+    coordinates: dict[str, Variable]
+    attrs: dict[str, Any]
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Dimensions in order of their appearance."""
+        return {dim: n for part in self.variables.values() for dim, n in zip(part.dims, part.data.shape)}
+
+    def values(self, name: str, at: Mapping[str, int] | None = None) -> np.ndarray:
+        """Numbers of a variable, read where others are not: ``at`` gives some dimensions' index, the rest keep their order."""
+        part = self.variables[name]
+        return np.asarray(part.data[tuple((at or {}).get(dim, slice(None)) for dim in part.dims)])
+
+    def loaded(self) -> Labelled:
+        """The same with all but the kept samples in memory: of a large map these would not fit."""
+        here = {name: v if name in KEPT else v._replace(data=self.values(name)) for name, v in self.variables.items()}
+        return self._replace(variables=here)
+
+
+def dataset(map_: Labelled) -> Any:
+    """A map as xarray's Dataset; what lies in a store is read from its tiles when it is needed."""
+    xarray = need_xarray()
+    stored = {name: part for name, part in map_.variables.items() if not isinstance(part.data, np.ndarray)}
+    lazy = {name: part._replace(data=_lazy(name, part.data)) for name, part in stored.items()}
+    return xarray.Dataset(map_.variables | lazy, map_.coordinates, map_.attrs)
+
+
+def _lazy(name: str, part: Any) -> Any:
+    # A name of our own: dask's would depend on the folder, and with it the order in which a file is written.
     # Told what it will find, dask need not read the store to learn it.
-    lazy = {
-        name: da.from_array(part, chunks=part.chunks, name=f"map-{name}", meta=np.empty((0,) * part.ndim, part.dtype))
-        for name, part in kept.arrays.items()
-    }
-    return _labelled(wanted, lazy, kept.solvers)
+    meta = np.empty((0,) * part.ndim, part.dtype)
+    return need_dask_array().from_array(part, chunks=part.chunks, name=f"map-{name}", meta=meta)
 
 
 def is_large(wanted: Request) -> bool:
@@ -76,18 +104,18 @@ def is_large(wanted: Request) -> bool:
     return max(int(np.prod(shape_of(wanted, name))) for name in VARIABLES) > ROOM
 
 
-def _labelled(wanted: Request, arrays: dict[str, Any], solvers: set[str]) -> Any:
-    xarray = need_xarray()
+def labelled(wanted: Request, kept: MemoryTiles | TileStore) -> Labelled:
+    """Computed tiles with names and units; of a store, variables of at most `ROOM` numbers are read, larger ones are not."""
     family, plan = wanted.family, wanted.plan
     length = "half play" if family.time_unit == "1/omega_0" else "rad"
     variables = {}
-    for name, values in arrays.items():
+    for name, values in kept.arrays.items():
         words, unit = ABOUT[name]
         unit = unit.format(time="tau" if family.time_unit == "1/omega_0" else "s", length=length)
-        dims = ["sample", *wanted.names] if name in KEPT else wanted.names
-        variables[name] = (dims, values, {"long_name": words, "units": unit})
+        dims = ("sample", *wanted.names) if name in KEPT else tuple(wanted.names)
+        variables[name] = Variable(dims, values if is_large(wanted) else values[...], {"long_name": words, "units": unit})
     coordinates = {
-        name: (name, np.array(values), {"units": family.unit(name), "long_name": family.long_name(name)})
+        name: Variable((name,), np.array(values), {"units": family.unit(name), "long_name": family.long_name(name)})
         for name, values in wanted.axes
     }
     constants = family.constants(wanted.names)
@@ -96,18 +124,19 @@ def _labelled(wanted: Request, arrays: dict[str, Any], solvers: set[str]) -> Any
     attributes: dict[str, Any] = {
         "title": "Lyapunov exponent, period and stroboscopic samples",
         "units": "lengths in half plays, time tau in 1/omega_0" if length == "half play" else "SI",
-        "periods": plan.periods, "skip": plan.skip, "start": np.array(wanted.start), "solver": ", ".join(sorted(solvers)),
+        "periods": plan.periods, "skip": plan.skip, "start": np.array(wanted.start), "solver": ", ".join(sorted(kept.solvers)),
         "package": "jaxbacklash", "version": package_version(), **constants,
     }  # fmt: skip
     if length == "half play":
         attributes["zeta_is"] = "c / (2 m omega_0); the paper's figures quote 2 zeta"
-    return xarray.Dataset(variables, coordinates, attributes)
+    return Labelled(variables, coordinates, attributes)
 
 
 def write_netcdf(map_: Any, path: str | os.PathLike[str]) -> None:
     """Write a map whole or not at all, and the same map always as the same bytes.
 
     A map from a store goes over in order, some chunks at a time, so that no more than `ROOM` numbers are in memory.
+    ``map_`` is a Dataset or a `Labelled`.
 
     Raises
     ------
@@ -122,7 +151,8 @@ def write_netcdf(map_: Any, path: str | os.PathLike[str]) -> None:
             file.dimensions = {str(name): int(size) for name, size in map_.sizes.items()}
             for key, value in map_.attrs.items():
                 file.attrs[key] = value
-            for name, variable in map_.variables.items():
+            coordinates = map_.coordinates if isinstance(map_, Labelled) else {}  # a Dataset's are among its variables
+            for name, variable in {**coordinates, **map_.variables}.items():
                 _write_variable(file, str(name), variable)
         part.replace(target)
     except OSError as error:
@@ -131,20 +161,29 @@ def write_netcdf(map_: Any, path: str | os.PathLike[str]) -> None:
 
 
 def _write_variable(file: Any, name: str, variable: Any) -> None:
-    chunks = getattr(variable.data, "chunks", None)
+    data = variable.data
+    chunks = _chunks(data)
     shape = tuple(parts[0] for parts in chunks) if chunks else None
-    written = file.create_variable(name, variable.dims, dtype=variable.dtype, chunks=shape)
+    written = file.create_variable(name, tuple(variable.dims), dtype=data.dtype, chunks=shape)
     for key, value in variable.attrs.items():
         written.attrs[key] = value
     if not chunks:
-        written[...] = variable.values
+        written[...] = np.asarray(data)
         return
     edges = [np.concatenate([[0], np.cumsum(parts)]) for parts in chunks]
     # Every so many edges, and the last one.
     stops = [[*e[:-1:step], e[-1]] for e, step in zip(edges, _together(chunks))]
     for box in product(*(pairwise(e) for e in stops)):
         where = tuple(slice(int(begin), int(end)) for begin, end in box)
-        written[where] = np.asarray(variable.data[where])
+        written[where] = np.asarray(data[where])
+
+
+def _chunks(data: Any) -> tuple[tuple[int, ...], ...] | None:
+    """The lengths of an array's chunks along each dimension, as dask tells them; zarr tells the length of a whole one."""
+    chunks = getattr(data, "chunks", None)
+    if not chunks or not isinstance(chunks[0], int):
+        return chunks
+    return tuple(tuple(min(step, size - i) for i in range(0, size, step)) for step, size in zip(chunks, data.shape))
 
 
 def _together(chunks: tuple[tuple[int, ...], ...]) -> list[int]:

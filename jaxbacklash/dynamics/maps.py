@@ -16,7 +16,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -25,6 +25,9 @@ from .family import Family, PaperCase
 from .follow import follow
 from .periodicity import periodicity, sizes
 from .plan import Plan
+
+if TYPE_CHECKING:
+    from .labels import Labelled
 
 Array = Any
 Progress = Callable[[str, float], None]
@@ -163,16 +166,26 @@ def run_map(
     BadInput
         xarray (or zarr, for a store) is missing, or the store holds another map.
     """
-    from .labels import dataset, dataset_from_store
+    from .labels import dataset
+
+    return dataset(labelled_map(wanted, store=store, client=client, workers=workers, progress=progress))
+
+
+def labelled_map(
+    wanted: Request, *, store: str | os.PathLike[str] | None = None, client: Any = None, workers: int | None = None,
+    progress: Progress | None = None,
+) -> Labelled:  # fmt: skip
+    """`run_map` without xarray: arrays with their names and units."""
+    from .labels import labelled
     from .tiles import MemoryTiles, TileStore
 
-    kept: Any = MemoryTiles(wanted) if store is None else TileStore(Path(store), wanted)
+    kept = MemoryTiles(wanted) if store is None else TileStore(Path(store), wanted)
     missing = [k for k, _ in enumerate(wanted.tiles()) if not kept.has(k)]
     tell = Clock(progress, len(wanted.tiles()), len(missing))
     for k, (numbers, solver) in _results(wanted, missing, client, workers):
         kept.put(k, numbers, solver)
         tell.one_more()
-    return dataset(wanted, kept) if store is None else dataset_from_store(wanted, kept)
+    return labelled(wanted, kept)
 
 
 def _results(wanted: Request, missing: list[int], client: Any, workers: int | None) -> Iterator[tuple[int, Any]]:

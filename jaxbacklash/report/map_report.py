@@ -19,16 +19,16 @@ def map_report(map_: Any, result: dict[str, Any], sentence: str, path: Path) -> 
 
     Parameters
     ----------
-    map_ : Dataset from `jaxbacklash.dynamics.maps`, over any number of axes; more than two are cut in their middle
+    map_ : `Labelled` from `jaxbacklash.dynamics.labels`, over any number of axes; more than two are cut in their middle
     result : what the command answers
     sentence : what to say first
     path : the page
     """
-    names = [str(name) for name in map_["lyapunov"].dims]
+    names = list(map_.variables["lyapunov"].dims)
     panels, first = [], None
     if len(names) >= 2:
-        cut, note = _cut(map_, names[2:])
-        drawn = _two(cut, names[:2])
+        at, note = _cut(map_, names[2:])
+        drawn = _two(map_, at, names[:2])
         first = drawn
         panels.append(
             Panel(
@@ -40,8 +40,8 @@ def map_report(map_: Any, result: dict[str, Any], sentence: str, path: Path) -> 
                 "periods of the drive. Grey cells neither return within the kept samples nor grow by three error bars.",
             )
         )
-    cut, note = _cut(map_, names[1:])
-    drawn = _one(cut, names[0])
+    at, note = _cut(map_, names[1:])
+    drawn = _one(map_, at, names[0])
     first = first or drawn
     where = f" Here{note.removeprefix(' Cut')}" if note else ""
     panels.append(
@@ -62,33 +62,32 @@ def map_report(map_: Any, result: dict[str, Any], sentence: str, path: Path) -> 
     return base64.b64decode(to_png_data_uri(first).split(",", 1)[1])
 
 
-def _cut(map_: Any, names: list[str]) -> tuple[Any, str]:
-    """The map at one value of some of its axes, near their middle or the paper's own, and words for where."""
+def _cut(map_: Any, names: list[str]) -> tuple[dict[str, int], str]:
+    """Where to cut some axes, near their middle or at the paper's own value, and words for it."""
     if not names:
-        return map_, ""
+        return {}, ""
     own = {"zeta": 0.02, "inverse_alpha": 2.0, "Omega": 0.2}
-    words = []
+    at, words = {}, []
     for name in names:
-        values = map_[name].values
+        values = map_.coordinates[name].data
         wanted = own.get(name, np.nan)
         inside = values.min() <= wanted <= values.max()
-        k = int(np.argmin(np.abs(values - wanted))) if inside else values.size // 2
-        map_ = map_.isel({name: k})
+        at[name] = k = int(np.argmin(np.abs(values - wanted))) if inside else values.size // 2
         words.append(f"{LABELS.get(name, name)} = {values[k]:.4g}")
-    return map_, f" Cut at {', '.join(words)}."
+    return at, f" Cut at {', '.join(words)}."
 
 
-def _two(map_: Any, names: list[str]) -> Figure:
+def _two(map_: Any, at: dict[str, int], names: list[str]) -> Figure:
+    axes = [map_.coordinates[name] for name in names]
     return exponent_and_period_map(
-        map_[names[0]].values, map_[names[1]].values, map_["lyapunov"].transpose(*names).values,
-        map_["period"].transpose(*names).values, names=names, units=[map_[name].attrs["units"] for name in names],
-        exponent_unit=map_["lyapunov"].attrs["units"],
+        axes[0].data, axes[1].data, map_.values("lyapunov", at), map_.values("period", at), names=names,
+        units=[axis.attrs["units"] for axis in axes], exponent_unit=map_.variables["lyapunov"].attrs["units"],
     )  # fmt: skip
 
 
-def _one(map_: Any, name: str) -> Figure:
+def _one(map_: Any, at: dict[str, int], name: str) -> Figure:
+    axis = map_.coordinates[name]
     return exponent_curve(
-        map_[name].values, map_["lyapunov"].values, map_["lyapunov_stderr"].values, name=name,
-        unit=map_[name].attrs["units"], exponent_unit=map_["lyapunov"].attrs["units"],
-        samples=map_["poincare"].transpose("sample", name).values,
+        axis.data, map_.values("lyapunov", at), map_.values("lyapunov_stderr", at), name=name, unit=axis.attrs["units"],
+        exponent_unit=map_.variables["lyapunov"].attrs["units"], samples=map_.values("poincare", at),
     )  # fmt: skip
