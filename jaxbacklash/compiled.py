@@ -86,13 +86,15 @@ class _Program:
     def __init__(self, exported: jax.export.Exported, frame: Any):
         self.exported, self.frame = exported, frame
         self.shared = exported.nr_devices > 1
+        self.plain = self.shared or exported.platforms == ("cpu",)
         mesh = Mesh(np.asarray(jax.devices()[: exported.nr_devices]), ("cores",))
         everywhere = NamedSharding(mesh, PartitionSpec())
         self.call = jax.jit(exported.call, in_shardings=everywhere) if self.shared else jax.jit(exported.call)
 
     def __call__(self, arrays: list[Any]) -> Any:
-        # An array that sits on one device cannot be handed to several.
-        results = iter(self.call([np.asarray(a) for a in arrays] if self.shared else arrays))
+        # An array that sits on one device cannot be handed to several; and for one that came out of another program, a program
+        # would be compiled once more. On a CPU numpy's view of it costs nothing.
+        results = iter(self.call([np.asarray(a) for a in arrays] if self.plain else arrays))
         return jax.tree.map(lambda leaf: next(results) if leaf is _Here else leaf, self.frame)
 
 

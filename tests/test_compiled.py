@@ -49,6 +49,16 @@ def test_the_next_process_does_not_trace(cache):
     assert len(list(cache.iterdir())) == 1
 
 
+@pytest.mark.parametrize("committed", [False, True])
+def test_what_came_out_of_a_program_goes_in_without_another(cache, committed):
+    call = process([])
+    a = np.arange(4.0)
+    found = call(None, a, a, 2)["b"]
+    call(None, jax.device_put(found, jax.devices()[-1]) if committed else found, a, 2)
+    (program,) = call.programs.values()
+    assert program.call._cache_size() == 1
+
+
 @pytest.mark.parametrize("other", [
     (None, np.arange(5.0), None, 2), (None, np.arange(4), None, 2), (None, np.arange(4.0), None, 3),
     (None, np.arange(4.0), np.zeros(2), 2), (Gravity(G=jnp.asarray(1.0)), np.arange(4.0), None, 2),

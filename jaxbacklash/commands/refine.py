@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 import sys
 import warnings
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -65,27 +66,14 @@ def _given(model: str, inertia: float | None) -> System | None:
 
 def deliver(found: Refinement, folder: Path | None, machine: bool, tell: Any) -> None:
     """Print a refinement and write result.json, model.toml and report.html into the folder."""
-    fit = found.fit
-    last = None if found.verdict.complete else _look(found, -1, tell)
-    words = shlex.join(["jaxbacklash", *sys.argv[1:]])
-    result = refinement_json(found, last, command_line=words, version=__version__)
-    written = ["result.json", "model.toml", "report.html"]
-    if folder is not None:
-        first = last if len(found.stages) == 1 else _look(found, 0, tell)
-        tell("drawing the report", 0.97)
-        write_text(folder / "result.json", json_text(result))
-        about = {"translational": fit.translational, "per_inertia": fit.per_inertia}
-        title = f"{fit.records[0].summary()}\n{result['verdict_text']}"
-        write_text(folder / "model.toml", dump_model(fit.system, heading=title, **about))
-        surface = _worth_a_table(found, last)
-        if surface is not None:
-            stopgap = surface.system.with_effects(surface.effect())
-            title += "\nThe learned torque is a table read from this record: a stopgap, not physics."
-            write_text(folder / "model-with-learned-torque.toml", dump_model(stopgap, heading=title, **about))
-            written.insert(2, "model-with-learned-torque.toml")
-        from ..report.refine_report import refine_report  # pictures bring matplotlib, for which a plain run need not wait
-
-        refine_report(found, result, folder / "report.html", first=first, last=last)
+    with ThreadPoolExecutor(1) as aside:
+        last = None if found.verdict.complete else _look(found, -1, tell)
+        # The base model is looked at beside the writing and drawing of all else.
+        alone = last is not None and len(found.stages) == 1
+        base = None if alone or folder is None else aside.submit(_look, found, 0, tell)
+        words = shlex.join(["jaxbacklash", *sys.argv[1:]])
+        result = refinement_json(found, last, command_line=words, version=__version__)
+        written = _write(found, result, last, base, folder) if folder is not None else []
     if machine:
         sys.stdout.write(json_text(result))
         return
@@ -93,6 +81,28 @@ def deliver(found: Refinement, folder: Path | None, machine: bool, tell: Any) ->
     print(result["cross_check"]["text"])
     if folder is not None:
         print(f"written: {folder}/{', '.join(written)}")
+
+
+def _write(
+    found: Refinement, result: dict[str, Any], last: Findings | None, base: Future[Findings | None] | None, folder: Path
+) -> list[str]:
+    """The files of a refinement, by name; ``base`` will tell where the base model fails, None where ``last`` tells it."""
+    fit = found.fit
+    write_text(folder / "result.json", json_text(result))
+    about = {"translational": fit.translational, "per_inertia": fit.per_inertia}
+    title = f"{fit.records[0].summary()}\n{result['verdict_text']}"
+    write_text(folder / "model.toml", dump_model(fit.system, heading=title, **about))
+    written = ["result.json", "model.toml", "report.html"]
+    surface = _worth_a_table(found, last)
+    if surface is not None:
+        stopgap = surface.system.with_effects(surface.effect())
+        title += "\nThe learned torque is a table read from this record: a stopgap, not physics."
+        write_text(folder / "model-with-learned-torque.toml", dump_model(stopgap, heading=title, **about))
+        written.insert(2, "model-with-learned-torque.toml")
+    from ..report.refine_report import refine_report  # pictures bring matplotlib, for which a plain run need not wait
+
+    refine_report(found, result, folder / "report.html", first=base.result if base is not None else lambda: last, last=last)
+    return written
 
 
 def text(found: Refinement, last: Findings | None) -> str:

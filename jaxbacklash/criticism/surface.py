@@ -8,6 +8,7 @@ out of sample: a table made from other stretches of the record predicts the stre
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import jax.numpy as jnp
@@ -15,6 +16,7 @@ import numpy as np
 
 from ..effects.learned import LearnedTorque
 from ..parameters import values
+from ..program import cores
 from ..system import System
 from .explain import explain, prepare_linear
 from .latent import Latent
@@ -93,8 +95,8 @@ def explain_torque(latent: Latent, sets: tuple[tuple[str, ...], ...] = SETS) -> 
     log_precisions = np.log(inside.precision) + 2.0 * np.log(10.0) * np.array([0.0, 0.5, 1.2, 2.2])
     if inside.order != 1:
         log_precisions -= 2.0 * np.log(10.0) * 0.5
-    tried = []
-    for names in [*(n for n in sets if varies(latent, n))] or [("t",)]:
+
+    def attempt(names: tuple[str, ...]) -> _Tried:
         knots = tuple(choose_knots(latent, name, len(names)) for name in names)
         phi = basis_at_nodes(latent, motions, names, knots)
         penalty = np.eye(WIDTH)
@@ -114,7 +116,12 @@ def explain_torque(latent: Latent, sets: tuple[tuple[str, ...], ...] = SETS) -> 
         # A remainder that wanders cannot tell its own level from the table's: the torque's level decides.
         table = table + float(np.average(torque - at_nodes @ table, weights=weights(latent, torque)))
         spread = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        tried.append(_Tried(names, knots, float(found.evidence), left, at_nodes, table, spread, theta))
+        return _Tried(names, knots, float(found.evidence), left, at_nodes, table, spread, theta)
+
+    first, *others = [n for n in sets if varies(latent, n)] or [("t",)]
+    tried = [attempt(first)]  # alone, so that one thread compiles what all of them run
+    with ThreadPoolExecutor(min(cores(), 4)) as pool:
+        tried += pool.map(attempt, others)
     tried.sort(key=lambda entry: -entry.evidence)
     plain = min(entry.evidence for entry in tried)
     best = _choose(tried)

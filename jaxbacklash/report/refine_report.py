@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -16,24 +17,27 @@ TELLING = 0.1
 
 
 def refine_report(
-    refinement: Refinement, result: dict[str, Any], path: Path, *, first: Findings | None = None, last: Findings | None = None
-) -> None:
+    refinement: Refinement, result: dict[str, Any], path: Path, *, first: Callable[[], Findings | None],
+    last: Findings | None = None,
+) -> None:  # fmt: skip
     """Write the page of a refinement.
 
     Parameters
     ----------
     refinement, result : what the loop found, and the same as result.json
     path : the file to write
-    first, last : where the first and the last model fail; None of a model that explains the record
+    first : asked last, since it may still be looked for: where the first model fails, None where that cannot be told
+    last : where the last model fails; None of a model that explains the record
     """
     fit = refinement.fit
     joint = {panel.anchor: panel for panel in pictures(
         fit.system, fit.records[0], fit.score, fit.noise[0], fit.translational, fit.per_inertia
     )}  # fmt: skip
     panels = [_errors(result), *_rankings(result["stages"], refinement.verdict.complete)]
-    if first is not None:
-        panels += _failures(first, "the base model", "base", fit.translational)
-    if len(refinement.stages) > 1 or first is None:
+    base = first()
+    if base is not None:
+        panels += _failures(base, "the base model", "base", fit.translational)
+    if len(refinement.stages) > 1 or base is None:
         have = " + ".join(["the base model", *refinement.effects])
         panels += _failures(last, have, "last", fit.translational) if last is not None else [_rest(refinement, have)]
     panels += [joint[name] for name in ("loop", "model", "force", "phase") if name in joint]
