@@ -129,14 +129,10 @@ def default_panels(system: System, rate: float) -> int:
 
 @eqx.filter_jit
 def _fixed(args: Driven, state: Any, dt: Any, intervals: int, every: int, located: bool) -> Any:
+    # One step of the solver is the whole run. `diffrax.diffeqsolve` would ask for no other, in a larger program.
     solver = PanelRK4(intervals * every, intervals, located)
-    solution = diffrax.diffeqsolve(
-        DrivenTerm(), solver, 0.0, dt * intervals, dt * intervals, state, args,
-        saveat=diffrax.SaveAt(dense=True), max_steps=1, adjoint=diffrax.ForwardMode(),
-    )  # fmt: skip
-    assert solution.interpolation is not None
-    edges = solution.interpolation.infos["edges"]
-    return args.t0 + dt * jnp.arange(intervals + 1), tuple(e[0] for e in edges)
+    edges = solver.step(DrivenTerm(), 0.0, dt * intervals, state, args, None, False)[2]["edges"]
+    return args.t0 + dt * jnp.arange(intervals + 1), tuple(edges)
 
 
 @eqx.filter_jit

@@ -1,4 +1,4 @@
-"""The exact solvers are diffrax's own kind: `diffrax.diffeqsolve` takes the same steps as a map, and reads between them."""
+"""The package's solvers are diffrax's own kind: `diffrax.diffeqsolve` takes the same steps as a map or a simulation does."""
 
 import diffrax
 import jax.numpy as jnp
@@ -12,8 +12,11 @@ from jaxbacklash.dynamics.normal_form import bare_joint, normal_form
 from jaxbacklash.dynamics.plan import Plan
 from jaxbacklash.excitation import Chirp
 from jaxbacklash.models import base_motion_joint
+from jaxbacklash.simulation import Driven, default_panels, simulate
+from jaxbacklash.solvers import PanelRK4
 from jaxbacklash.solvers.exact_courses import Along, ExactCourse
 from jaxbacklash.solvers.exact_periods import ExactPeriods, Pieces, begin
+from jaxbacklash.solvers.substeps import DrivenTerm
 
 PLAN = Plan(40, 10, 8)
 
@@ -54,3 +57,17 @@ def test_a_course(amplitude):
     np.testing.assert_allclose(theirs.p[-PLAN.samples :], ours.p, rtol=0.0, atol=1e-9)
     np.testing.assert_allclose(theirs.v[-PLAN.samples :], ours.v, rtol=0.0, atol=1e-8)
     assert np.abs(theirs.p).max() > 1.0  # it has met the edges
+
+
+def test_panels_and_the_motion_between_them():
+    system, drive, rate = base_motion_joint(1.0, 0.02, 900.0, 1.5), Chirp(0.05, 2.0, 6.0, 2.0), 200.0
+    ours = simulate(system, drive, duration=2.0, rate=rate)
+    every, start = default_panels(system, rate), tuple(part[0] for part in ours.states)
+    found = diffrax.diffeqsolve(
+        DrivenTerm(), PanelRK4(400 * every, 400, True), 0.0, 2.0, 2.0, start, Driven(system, drive, jnp.zeros(())),
+        saveat=diffrax.SaveAt(dense=True), max_steps=1, adjoint=diffrax.ForwardMode(),
+    )  # fmt: skip
+    for k in (0, 57, 400):
+        np.testing.assert_allclose(found.evaluate(k / rate)[0], ours.states[0][k], rtol=0.0, atol=1e-12)
+    between = found.evaluate(57.5 / rate)[0]
+    np.testing.assert_allclose(between, 0.5 * (ours.states[0][57] + ours.states[0][58]), rtol=0.0, atol=1e-12)
