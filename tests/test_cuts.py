@@ -7,8 +7,11 @@ import pytest
 
 from jaxbacklash.criticism import cuts, tried
 from jaxbacklash.criticism.refine import refine
+from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.records import Record
 
+from .hidden import hidden
 from .test_search_steps import Bench, Model
 
 RUBBED = frozenset({"coulomb_joint"})
@@ -51,6 +54,28 @@ def test_only_dry_friction_is_a_reason_to_cut(monkeypatch):
     names = frozenset({"preload"})
     free = Model(names, cost=90.0, tied=False)
     assert tried.Tried(Rubbing(Model(names, cost=150.0, done=False, misfit=1.2))).settle(free) is free
+
+
+def test_a_cut_is_paid_for():
+    """Where nothing is wrong a cut takes off the cost what a position and a speed more take by chance, and is charged for them."""
+    record, rig, _, _ = hidden(None, "chirp", 5)
+    base, free, _ = base_system(record, "joint", rig.inertia)
+    bench = Workbench(record, base, free, 0.2)
+    whole = bench.fit({}, bench.fit({}, patience=60), tied=True, patience=60)
+    ties = np.asarray(bench.ties).copy()
+    many = np.flatnonzero(ties)[4::9]
+    ties[many] = 0.0
+    bench.cut(ties)
+    assert bench.is_cut
+    parted = bench.fit({}, whole, tied=True, patience=60)
+    charged = parted.penalty - whole.penalty
+    assert charged == pytest.approx(4.0 * many.size)
+    fallen = 2.0 * (whole.cost - parted.cost)
+    freed = 2.0 * many.size  # as many squares of a normal number: their mean, and five of their standard deviations
+    assert 0.0 < fallen < freed + 5.0 * np.sqrt(2.0 * freed)
+    assert parted.criterion > whole.criterion
+    bench.cut(bench.ties)
+    assert not bench.is_cut
 
 
 @pytest.mark.slow
