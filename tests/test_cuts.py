@@ -57,7 +57,7 @@ def test_only_dry_friction_is_a_reason_to_cut(monkeypatch):
 
 
 def test_a_cut_is_paid_for():
-    """Where nothing is wrong a cut takes off the cost what a position and a speed more take by chance, and is charged for them."""
+    """Where nothing is wrong a cut lowers the cost as a position and a speed more do by chance, and is charged for them."""
     record, rig, _, _ = hidden(None, "chirp", 5)
     base, free, _ = base_system(record, "joint", rig.inertia)
     bench = Workbench(record, base, free, 0.2)
