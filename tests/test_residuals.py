@@ -2,11 +2,14 @@
 
 import json
 
+import numpy as np
 import pytest
+from scipy import stats
 
 import jaxbacklash as jb
 from jaxbacklash.commands import diagnose as command
 from jaxbacklash.commands.common import Reading
+from jaxbacklash.criticism.failures import ranks_of
 from jaxbacklash.model_file import load_model
 
 from .hidden import hidden
@@ -39,6 +42,11 @@ def test_findings_name_the_place(name, words):
     told = found.as_json()
     json.dumps(told, allow_nan=False)
     assert told["latent_torque"]["explained_by"] == list(found.surface.coordinates)
+
+
+def test_ranks_are_those_of_scipy():
+    values = np.random.default_rng(2).integers(-9, 9, 300).astype(float)
+    np.testing.assert_array_equal(ranks_of(values), stats.rankdata(values))
 
 
 def test_clean_record_is_noise():

@@ -9,7 +9,9 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 from ..errors import BadInput
@@ -105,7 +107,7 @@ def names(text: str | None) -> list[str]:
 
 
 def out_folder(path: Path | None) -> Path | None:
-    """Make the folder for results.
+    """Make the folder for results, and begin to load what draws them: the compiler, which works next, leaves Python free.
 
     Raises
     ------
@@ -118,6 +120,7 @@ def out_folder(path: Path | None) -> Path | None:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise BadInput(f"--out {path}: cannot make this folder ({error.strerror}), wanted a folder to write into") from None
+    Thread(target=import_module, args=("..report.figures", __package__), daemon=True).start()
     return path
 
 
