@@ -73,7 +73,10 @@ def deliver(found: Refinement, folder: Path | None, machine: bool, tell: Any) ->
         base = None if alone or folder is None else aside.submit(_look, found, 0, tell)
         words = shlex.join(["jaxbacklash", *sys.argv[1:]])
         result = refinement_json(found, last, command_line=words, version=__version__)
-        written = _write(found, result, last, base, folder) if folder is not None else []
+        written = []
+        if folder is not None:
+            tell("drawing the report", 0.97)
+            written = _write(found, result, last, base, folder)
     if machine:
         sys.stdout.write(json_text(result))
         return

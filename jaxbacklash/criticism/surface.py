@@ -8,7 +8,6 @@ out of sample: a table made from other stretches of the record predicts the stre
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import jax.numpy as jnp
@@ -16,7 +15,7 @@ import numpy as np
 
 from ..effects.learned import LearnedTorque
 from ..parameters import values
-from ..program import cores
+from ..side_by_side import side_by_side
 from ..system import System
 from .explain import explain, prepare_linear
 from .latent import Latent
@@ -120,8 +119,7 @@ def explain_torque(latent: Latent, sets: tuple[tuple[str, ...], ...] = SETS) -> 
 
     first, *others = [n for n in sets if varies(latent, n)] or [("t",)]
     tried = [attempt(first)]  # alone, so that one thread compiles what all of them run
-    with ThreadPoolExecutor(min(cores(), 4)) as pool:
-        tried += pool.map(attempt, others)
+    tried += side_by_side(attempt, others)
     tried.sort(key=lambda entry: -entry.evidence)
     plain = min(entry.evidence for entry in tried)
     best = _choose(tried)

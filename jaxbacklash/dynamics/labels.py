@@ -105,7 +105,7 @@ def is_large(wanted: Request) -> bool:
 
 
 def labelled(wanted: Request, kept: MemoryTiles | TileStore) -> Labelled:
-    """Computed tiles with names and units; of a store, variables of at most `ROOM` numbers are read, larger ones are not."""
+    """Computed tiles with names and units; from a store they are read at once unless the map is large, see `is_large`."""
     family, plan = wanted.family, wanted.plan
     length = "half play" if family.time_unit == "1/omega_0" else "rad"
     variables = {}

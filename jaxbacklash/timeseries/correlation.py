@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..side_by_side import side_by_side
 from .embedding import embed, vectors
 from .neighbours import references
 from .region import POINTS, Region
-from .side_by_side import side_by_side
 
 REFERENCES = 600
 TARGETS = 20000

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..side_by_side import side_by_side
 from .embedding import embed
 from .neighbours import nearest, references
-from .side_by_side import side_by_side
 
 LARGEST = 10
 REFERENCES = 2000

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .side_by_side import side_by_side
+from ..side_by_side import side_by_side
 from .tangent import CHAIN, Growth, LocalMap, growth, scan
 
 AS_GOOD = 1.5  # maps whose prediction error is within this factor of the best also count

@@ -8,8 +8,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.special import digamma
 
+from ..side_by_side import side_by_side
 from .scales import correlation_time, mean_period
-from .side_by_side import side_by_side
 
 NEIGHBOURS = 6
 PAIRS = 3000  # pairs of samples a lag is judged by

@@ -10,9 +10,9 @@ from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
 from ..program import cores
+from ..side_by_side import side_by_side
 from .embedding import embed
 from .planes import widest
-from .side_by_side import side_by_side
 
 BLOCK = 1024  # vectors at once
 NEIGHBOURS = 40

@@ -8,9 +8,9 @@ import numpy as np
 from scipy.fft import next_fast_len
 from scipy.spatial import cKDTree
 
+from ..side_by_side import side_by_side
 from .embedding import embed
 from .neighbours import nearest, references
-from .side_by_side import side_by_side
 from .tangent import fit_maps
 
 ITERATIONS = 60

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
+from ..side_by_side import side_by_side
 from .embedding import embed
 from .neighbours import nearest, references
-from .side_by_side import side_by_side
 
 COUNTS = (12, 20, 35, 60, 110, 200)  # neighbours tried
 SCAN = 600  # reference points the choice is made on

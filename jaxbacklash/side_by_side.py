@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from typing import TypeVar
 
-from ..program import cores
+from .program import cores
 
 Part = TypeVar("Part")
 Result = TypeVar("Result")
