@@ -1,6 +1,6 @@
 """The same series through nolds and neurokit2: exponent, delay, dimension, and how long it took.
 
-    python -m benchmarks.chaos_peers [--tiny] [--samples 5000 20000]
+    python -m benchmarks.chaos_peers [--tiny] [--samples 5000 20000] [--series N] [--only SYSTEM ...]
 
 Each peer is called as its documentation shows, with its own defaults, except that all are told the delay found here where
 they take one; a peer that is not installed is left out. A row is over as many series as hold 25,000 samples together, one at
@@ -27,6 +27,7 @@ from jaxbacklash.timeseries.analyse import WORTH_IT_DB, vectors
 from tests.independent.chaotic import HENON, LOGISTIC, LORENZ, ROSSLER, Chaotic, with_noise
 
 TOGETHER = 25_000
+SYSTEMS = (LORENZ, ROSSLER, HENON, LOGISTIC)
 Answer = tuple[float, int | None, int | None]
 
 
@@ -117,7 +118,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--tiny", action="store_true", help="one short series")
     parser.add_argument("--samples", type=int, nargs="+", default=[5000, 20000])
+    parser.add_argument("--series", type=int, help="series a row; without it as many as hold 25,000 samples together")
+    parser.add_argument("--only", nargs="+", help="systems, by name")
     asked = parser.parse_args()
+    systems = [s for s in SYSTEMS if asked.only is None or s.name in asked.only]
+    if not systems:
+        parser.error(f"--only: one of {', '.join(s.name for s in SYSTEMS)}")
     peers = {}
     for name, (module, make) in PEERS.items():
         try:
@@ -125,8 +131,8 @@ def main() -> None:
         except ImportError:
             print(f"{module} is not installed: {name} is left out")
     for samples in [600] if asked.tiny else asked.samples:
-        count = 1 if asked.tiny else max(1, TOGETHER // samples)
-        for system in (HENON,) if asked.tiny else (LORENZ, ROSSLER, HENON, LOGISTIC):
+        count = 1 if asked.tiny else asked.series or max(1, TOGETHER // samples)
+        for system in (HENON,) if asked.tiny else systems:
             for noise in (0.0, 0.02):
                 many = list(with_noise(system.series(samples, count, 8), noise, 8))
                 print(f"{system.name}, {samples} samples, {100 * noise:.0f} % noise, {count} series")

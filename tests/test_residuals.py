@@ -1,6 +1,7 @@
 """Where a model fails, in words: the right place, the right dependence, and silence on clean records."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from scipy import stats
 import jaxbacklash as jb
 from jaxbacklash.commands import diagnose as command
 from jaxbacklash.commands.common import Reading
-from jaxbacklash.criticism.failures import ranks_of
+from jaxbacklash.criticism.failures import depends, ranks_of
 from jaxbacklash.model_file import load_model
 
 from .hidden import hidden
@@ -47,6 +48,17 @@ def test_findings_name_the_place(name, words):
 def test_ranks_are_those_of_scipy():
     values = np.random.default_rng(2).integers(-9, 9, 300).astype(float)
     np.testing.assert_array_equal(ranks_of(values), stats.rankdata(values))
+
+
+def test_a_link_that_stands_still_is_not_asked_where_it_stood():
+    latent = found_in("gravity").latent
+    still = replace(latent, y=np.full_like(latent.y, 0.1), dy=np.zeros_like(latent.y))
+    # ... or rests for all but a few moments, so that nearly all quantiles are one number
+    resting = replace(latent, y=np.where(np.arange(latent.y.size) < 3, 0.2, 0.1))
+    for moved in (still, resting):
+        asked = {entry.coordinate for entry in depends(moved, moved.torque, np.ones(moved.t.size))}
+        assert "y" not in asked
+        assert {"z", "dz", "t"} <= asked
 
 
 def test_clean_record_is_noise():

@@ -9,6 +9,7 @@ import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.effects import CoulombGround
+from jaxbacklash.fitting.estimates import judge
 from jaxbacklash.fitting.loop import read_loop, read_plateau, stop
 from jaxbacklash.records import oriented, parse_columns, parse_units, read_record
 from jaxbacklash.signals import noise_of_differences
@@ -124,6 +125,17 @@ def test_a_wrong_model_gets_wide_intervals_and_says_so():
     assert found.score.rms > 1.5
     right = jb.fit(soft, effects=["coulomb_ground"], translational=True, starts=1)
     assert found.parameters["backlash"].stderr > 5.0 * right.parameters["backlash"].stderr
+
+
+def test_a_contact_that_carries_force_was_met_however_soft_it_begins():
+    stderr = {"stiffness": 0.3 * TRUTH["stiffness"], "backlash": 1e-4}
+    found = judge(model(), list(stderr), stderr, [record_of()], per_inertia=False, translational=True)
+    assert found["backlash"].verdict == "found"
+    assert found["stiffness"].verdict == "not determined"
+    assert "contact shows" in found["stiffness"].why
+    stderr["backlash"] = 2e-3
+    found = judge(model(), list(stderr), stderr, [record_of()], per_inertia=False, translational=True)
+    assert "exceeds half" in found["backlash"].why
 
 
 @pytest.mark.slow

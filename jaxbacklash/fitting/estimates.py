@@ -16,6 +16,8 @@ from ..system import System
 FOUND, ONE_SIDED, UNDETERMINED = "found", "one-sided", "not determined"
 MOST_UNCERTAIN = 0.5
 """Standard error, as a share of the value, above which a value is not determined."""
+CLEAR = 5.0
+"""Standard errors that a contact stiffness has to stand clear of zero."""
 CARRIED = 0.1
 """Share of the largest transmitted force that only contact can carry."""
 NORMAL_95 = float(ndtri(0.975))
@@ -121,7 +123,10 @@ def _joint_reasons(
     touch = [contacts(r, low, high) for r in records]
     above, below = max(c.above for c in touch), max(c.below for c in touch)
     reach = max(c.reach for c in touch)
-    weak = stiffness < 5.0 * stderr.get("stiffness", 0.0) or not np.isfinite(stderr.get("stiffness", 0.0))
+    weak = stiffness < CLEAR * stderr.get("stiffness", 0.0) or not np.isfinite(stderr.get("stiffness", 0.0))
+    if weak and all(r.kind == "transmitted" for r in records) and min(above, below) > 0.0:
+        # What only contact can carry was measured: the joint met both edges, and the play is judged by its own error.
+        return {"stiffness": (UNDETERMINED, "contact shows, but its standard error exceeds a fifth of its value")}
     if weak or (above == 0.0 and below == 0.0):
         why = f"z never leaves the play: |z| stays below {reach:.4g} {length} and no contact shows"
         return {"backlash": (UNDETERMINED, why), "stiffness": (UNDETERMINED, why)}
