@@ -10,6 +10,7 @@ import atexit
 import gc
 import sys
 import warnings
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -306,12 +307,9 @@ def main() -> None:
     # Much is loaded, most of it stays, and a command ends soon: looking through all of it for garbage is a fifth of the time.
     gc.set_threshold(100_000, 50, 100)
     atexit.register(gc.freeze)  # nor once more when all of it goes anyway, which took longer than a fit
-    if "--help" not in sys.argv[1:]:  # which needs no jax
-        from .program import start
-
-        start(brief=sys.argv[1:2] != ["map"])  # a map computes for long
     try:
-        app(standalone_mode=False)
+        with _begun(sys.argv[1:]):
+            app(standalone_mode=False)
     except BadInput as error:
         sys.exit(_say(f"error: {error}", 2))
     except NoAnswer as error:
@@ -328,6 +326,19 @@ def main() -> None:
         # A wrong word on the command line, told by the parser; without any word it has just shown the help.
         sentence = " ".join(error.format_message().split())
         sys.exit(_say(f"error: {sentence}", 2) if len(sys.argv) > 1 else 2)
+
+
+def _begun(words: list[str]) -> AbstractContextManager[None]:
+    """The program as it computes, its last run's programs on their way; as it is where only help is asked for, without jax."""
+    if "--help" in words:
+        return nullcontext()
+    from .program import cache_folder, start
+
+    start(brief=words[:1] != ["map"])  # a map computes for long
+    from .read_ahead import reading_ahead
+
+    command = next((word for word in words[:1] if word.isidentifier()), None)
+    return nullcontext() if command is None else reading_ahead(command, cache_folder())
 
 
 def _say(sentence: str, code: int) -> int:

@@ -17,6 +17,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from concurrent.futures import Future
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -28,11 +29,19 @@ import numpy as np
 from jax.sharding import Mesh, NamedSharding, PartitionSpec
 
 Key = tuple[Any, ...]
+Loaded = tuple[jax.export.Exported, Any]
+"""A program, and what calls it."""
 MONTH = 30 * 24 * 3600.0
 KNOWN = ("jaxbacklash", "jax", "jaxlib", "equinox", "diffrax", "optimistix", "lineax", "numpy")
 """Packages whose code is told by their version or, for this one, by its source."""
 UNKEPT = (pickle.PicklingError, AttributeError, TypeError, ValueError, NotImplementedError, ImportError)
 """What arguments that cannot be written down, or programs that cannot be exported, raise."""
+
+
+ahead: dict[str, Future[Loaded | None]] = {}
+"""Programs by file name that are being read before they are asked for (`jaxbacklash.read_ahead`); None if they cannot be."""
+used: list[str] = []
+"""File names of the programs that this process has asked for, in order."""
 
 
 class _Foreign(Exception):
@@ -83,19 +92,23 @@ def _is_array(leaf: Any) -> bool:
 class _Program:
     """A program from arrays to arrays, and the tree that its results make up."""
 
-    def __init__(self, exported: jax.export.Exported, frame: Any):
-        self.exported, self.frame = exported, frame
-        self.shared = exported.nr_devices > 1
-        self.plain = self.shared or exported.platforms == ("cpu",)
-        mesh = Mesh(np.asarray(jax.devices()[: exported.nr_devices]), ("cores",))
-        everywhere = NamedSharding(mesh, PartitionSpec())
-        self.call = jax.jit(exported.call, in_shardings=everywhere) if self.shared else jax.jit(exported.call)
+    def __init__(self, exported: jax.export.Exported, frame: Any, call: Any = None):
+        self.exported, self.frame, self.call = exported, frame, call or caller(exported)
+        self.plain = exported.nr_devices > 1 or exported.platforms == ("cpu",)
 
     def __call__(self, arrays: list[Any]) -> Any:
         # An array that sits on one device cannot be handed to several; and for one that came out of another program, a program
         # would be compiled once more. On a CPU numpy's view of it costs nothing.
         results = iter(self.call([np.asarray(a) for a in arrays] if self.plain else arrays))
         return jax.tree.map(lambda leaf: next(results) if leaf is _Here else leaf, self.frame)
+
+
+def caller(exported: jax.export.Exported) -> Any:
+    """What calls a program, on as many devices as it was made for."""
+    if exported.nr_devices == 1:
+        return jax.jit(exported.call)
+    mesh = Mesh(np.asarray(jax.devices()[: exported.nr_devices]), ("cores",))
+    return jax.jit(exported.call, in_shardings=NamedSharding(mesh, PartitionSpec()))
 
 
 def _find(function: Callable[..., Any], args: Any, kinds: Any, folder: Path) -> _Program | None:
@@ -106,6 +119,7 @@ def _find(function: Callable[..., Any], args: Any, kinds: Any, folder: Path) -> 
         if found is None:
             found = _trace(function, args)
             _keep(found, path)
+        used.append(path.name)
     except (_Foreign, *UNKEPT):
         return None
     return found
@@ -131,7 +145,9 @@ def _trace(function: Callable[..., Any], args: Any) -> _Program:
 def _load(path: Path) -> _Program | None:
     try:
         text, frame = pickle.loads(path.read_bytes())
-        program = _Program(jax.export.deserialize(text), frame)
+        begun = ahead.get(path.name)
+        exported, call = (begun and begun.result()) or (jax.export.deserialize(text), None)
+        program = _Program(exported, pickle.loads(frame), call)
         os.utime(path)
     except Exception:  # missing, half written, or of another making: it is made anew
         return None
@@ -139,7 +155,8 @@ def _load(path: Path) -> _Program | None:
 
 
 def _keep(program: _Program, path: Path) -> None:
-    text = pickle.dumps((bytes(program.exported.serialize()), program.frame))
+    # The frame apart: reading it loads the modules of its classes.
+    text = pickle.dumps((bytes(program.exported.serialize()), pickle.dumps(program.frame)))
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:

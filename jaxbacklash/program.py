@@ -83,5 +83,5 @@ def start(*, cache: bool = True, devices: int | None = None, brief: bool = False
     except OSError:
         return  # a read-only home costs compile time, nothing else
     jax.config.update("jax_compilation_cache_dir", str(folder))
-    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.05)
+    jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", 0)

@@ -14,6 +14,7 @@ import jaxbacklash.compiled as compiled
 from jaxbacklash.compiled import kept_jit
 from jaxbacklash.effects import Gravity
 from jaxbacklash.mechanics import AbstractEffect
+from jaxbacklash.read_ahead import reading_ahead
 
 
 @pytest.fixture
@@ -140,3 +141,57 @@ def test_linear_algebra_and_several_devices_come_back(cache):
     np.testing.assert_array_equal(first[0], again[0])
     np.testing.assert_allclose(matrix @ np.asarray(again[0]), right, rtol=1e-14)
     np.testing.assert_allclose(np.asarray(again[1]) @ np.asarray(again[1]).T, matrix, rtol=1e-14)
+
+
+@pytest.fixture
+def nothing_used(monkeypatch):
+    """As at the start of a process."""
+    monkeypatch.setattr(compiled, "used", [])
+
+
+def test_what_a_command_used_is_read_before_it_is_asked_for_again(cache, nothing_used):
+    traced: list[str] = []
+    cache.mkdir()
+    a = np.arange(4.0)
+    with reading_ahead("fit", cache.parent):
+        process(traced)(None, a, None, 2)
+    name = next(cache.glob("*.program")).name
+    assert (cache / "fit.used").read_text().split() == [name]
+
+    call = process(traced)
+    with reading_ahead("fit", cache.parent):
+        _, ready = compiled.ahead[name].result()
+        found = call(None, a, None, 2)["sum"]
+        (program,) = call.programs.values()
+        assert program.call is ready
+    assert found == pytest.approx(14.0)
+    assert traced == ["traced"]
+    assert compiled.ahead == {}
+
+
+@pytest.mark.parametrize("broken", [b"", b"half a pro", b"\x80\x04garbage"])
+def test_what_cannot_be_read_ahead_is_made_anew(cache, nothing_used, broken):
+    traced: list[str] = []
+    a = np.arange(4.0)
+    process(traced)(None, a, None, 2)
+    (kept,) = cache.iterdir()
+    kept.write_bytes(broken)
+    (cache / "fit.used").write_text(f"{kept.name}\nnone-of-that-name.program\n")
+    with reading_ahead("fit", cache.parent):
+        assert process(traced)(None, a, None, 2)["sum"] == pytest.approx(14.0)
+    assert traced == ["traced", "traced"]
+    (cache / "fit.used").write_bytes(b"\xff\xfe\x00")
+    with reading_ahead("fit", cache.parent):
+        assert compiled.ahead == {}
+
+
+def test_a_command_that_ends_early_leaves_the_list_as_it_was(cache, nothing_used):
+    cache.mkdir()
+    names = [f"{number}.program" for number in range(50)]
+    (cache / "fit.used").write_text("\n".join(names))
+    with pytest.raises(ValueError, match="wrong column"), reading_ahead("fit", cache.parent):
+        raise ValueError("wrong column")
+    assert compiled.ahead == {}
+    assert (cache / "fit.used").read_text().split() == names
+    with reading_ahead("fit", None):  # no cache
+        pass
