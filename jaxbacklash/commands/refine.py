@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 import sys
 import warnings
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from ..criticism import refine as refine_record
 from ..criticism.ranking import plain
 from ..errors import NoAnswer
 from ..model_file import dump_model
-from ..report.refine_result import refinement_json
+from ..report.refine_result import other_methods, refinement_json
 from ..system import System
 from .common import Reading, check_window, json_text, model_of_file, out_folder, progress, write_text
 
@@ -42,12 +43,15 @@ def run(
     held = reading.record(heldout) if heldout is not None else None
     folder = out_folder(out)
     system = _given(model, inertia)
-    with progress(as_json) as tell:
+    # What other methods say of the model kept is worked out beside the scores of the ones on the way.
+    with progress(as_json) as tell, ThreadPoolExecutor(1) as aside:
+        checked: list[Future[dict[str, Any]]] = []
         found = refine_record(
             record, heldout=held, model=model if system is None else "joint", inertia=inertia, system=system, window=window,
             translational=translational, seed=seed, progress=tell,
+            settled=lambda fit: checked.append(aside.submit(other_methods, fit)),
         )  # fmt: skip
-        deliver(found, folder, as_json, tell)
+        deliver(found, folder, as_json, tell, checked[0].result)
 
 
 def _given(model: str, inertia: float | None) -> System | None:
@@ -64,15 +68,18 @@ def _given(model: str, inertia: float | None) -> System | None:
     return System(full.inertia, full.contact, full.damper, {}, full.observed)
 
 
-def deliver(found: Refinement, folder: Path | None, machine: bool, tell: Any) -> None:
-    """Print a refinement and write result.json, model.toml and report.html into the folder."""
+def deliver(
+    found: Refinement, folder: Path | None, machine: bool, tell: Any, checked: Callable[[], dict[str, Any]] = lambda: {}
+) -> None:
+    """Print a refinement and write result.json, model.toml and report.html into the folder; ``checked`` waits for what other
+    methods say of it, nothing if they have not been asked."""
     with ThreadPoolExecutor(1) as aside:
         last = None if found.verdict.complete else _look(found, -1, tell)
         # The base model is looked at beside the writing and drawing of all else.
         alone = last is not None and len(found.stages) == 1
         base = None if alone or folder is None else aside.submit(_look, found, 0, tell)
         words = shlex.join(["jaxbacklash", *sys.argv[1:]])
-        result = refinement_json(found, last, command_line=words, version=__version__)
+        result = refinement_json(found, last, command_line=words, version=__version__, checked=checked() or None)
         written = []
         if folder is not None:
             tell("drawing the report", 0.97)

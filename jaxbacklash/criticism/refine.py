@@ -84,6 +84,7 @@ def refine(
     translational: bool = False,
     seed: int = 0,
     progress: Callable[[str, float], None] = silent,
+    settled: Callable[[Fit], object] = lambda fit: None,
 ) -> Refinement:
     """Find the effects that a record needs beyond its base model.
 
@@ -98,6 +99,7 @@ def refine(
     translational : units of a translating mass
     seed : seed of everything random
     progress : told the stage in words and the share of the work done
+    settled : told the model kept as soon as it is scored, while the ones on the way to it still are
 
     Raises
     ------
@@ -127,7 +129,10 @@ def refine(
     progress("scoring predictions", 0.85)
     per_inertia = inertia is None and record.kind not in ABSOLUTE and model != "given"
     judged = _Judge(bench, heldout, model, per_inertia, translational, start)
-    stages = tuple(Stage(s.added, s.dropped, judged(s.trial), s.ranking, s.evidence) for s in steps)
+    last = judged(steps[-1].trial)
+    settled(last)
+    fits = [*(judged(s.trial) for s in steps[:-1]), last]
+    stages = tuple(Stage(s.added, s.dropped, fit, s.ranking, s.evidence) for s, fit in zip(steps, fits))
     clock["score"] = time.perf_counter()
     others = tuple(sorted(search.level, key=lambda names: search.level[names].criterion))
     verdict = judge_rest(steps[-1].trial, [s.fit for s in stages])

@@ -34,8 +34,9 @@ def candidates_json(ranking: Ranking) -> list[dict[str, Any]]:
 
 
 def refinement_json(
-    refinement: Refinement, findings: Findings | None = None, *, command_line: str = "", version: str = ""
-) -> dict[str, Any]:
+    refinement: Refinement, findings: Findings | None = None, *, command_line: str = "", version: str = "",
+    checked: dict[str, Any] | None = None,
+) -> dict[str, Any]:  # fmt: skip
     """The whole result of ``refine``.
 
     Parameters
@@ -43,9 +44,11 @@ def refinement_json(
     refinement : what the loop found
     findings : where the last model still fails, told of a model that is incomplete
     command_line, version : for the record
+    checked : what `other_methods` say of the model kept, where that is known already
     """
     fit, stages = refinement.fit, refinement.stages
-    result = fit_json(fit, command="refine", command_line=command_line, version=version, checked=_checked(fit))
+    checked = other_methods(fit) if checked is None else checked
+    result = fit_json(fit, command="refine", command_line=command_line, version=version, checked=checked)
     result.pop("starts")  # the loop fits from one start, which its quick look has chosen
     followed = [*stages[1:], None]
     result["stages"] = [
@@ -81,8 +84,8 @@ def _moved_json(step: Moved) -> dict[str, float | None]:
     return {"percent": finite(step.percent), "stderrs": finite(step.stderrs)}
 
 
-def _checked(fit: Fit) -> dict[str, Any]:
-    """Other methods beside the fit, the equation-error estimate with the effects that were found in its regression."""
+def other_methods(fit: Fit) -> dict[str, Any]:
+    """The entry ``cross_check``: other methods beside a fit, the regression of its equation of motion with the effects found."""
     # Where the link's motion is not in the record there is nothing to regress on.
     if fit.start is None or not fit.system.effects or fit.records[0].kind == "transmitted":
         return cross_check(fit)
