@@ -4,13 +4,17 @@ import json
 import warnings
 from functools import lru_cache
 
+import equinox as eqx
 import numpy as np
 import pytest
 
 import jaxbacklash as jb
+from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.effects import CoulombGround
 from jaxbacklash.fitting.estimates import judge
 from jaxbacklash.fitting.loop import read_loop, read_plateau, stop
+from jaxbacklash.fitting.score import score
+from jaxbacklash.fitting.setup import base_system, first_guess
 from jaxbacklash.records import oriented, parse_columns, parse_units, read_record
 from jaxbacklash.signals import noise_of_differences
 from tests.independent.held_link import HeldLink, measured, modulated_sine
@@ -125,6 +129,17 @@ def test_a_wrong_model_gets_wide_intervals_and_says_so():
     assert found.score.rms > 1.5
     right = jb.fit(soft, effects=["coulomb_ground"], translational=True, starts=1)
     assert found.parameters["backlash"].stderr > 5.0 * right.parameters["backlash"].stderr
+
+
+def test_a_link_that_is_not_seen_has_no_new_start_in_every_window():
+    record = record_of()
+    system, names, _ = base_system(record, "joint", None)  # without the friction that holds the link
+    bench = Workbench(record, system, names, 0.2)
+    problem, _ = bench.problem({}, system)
+    whole = eqx.tree_at(lambda p: p.windows.tie, problem, bench.ties)
+    told = {t: score(whole, first_guess(whole), bench.layout, group=bench.group, through=t)[0][0] for t in (False, True)}
+    assert told[True].rms > 3.0 * told[False].rms
+    assert told[True].window_rms.shape == told[False].window_rms.shape
 
 
 def test_a_contact_that_carries_force_was_met_however_soft_it_begins():

@@ -161,7 +161,7 @@ class _Judge:
         still = Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
         # A window whose error is quoted is one trajectory, wherever the search was cut.
         whole = eqx.tree_at(lambda p: p.windows.tie, problem, bench.ties)
-        scored, _ = score(whole, still, bench.layout, group=bench.group)
+        scored, _ = score(whole, still, bench.layout, group=bench.group, through=bool(bench.outright))
         held = None if self.heldout is None else self._predict(problem)
         q = len(free)
         scales = trial.scales[:q]
@@ -189,4 +189,4 @@ class _Judge:
             factor = self.bench.noise_factor
             windows = eqx.tree_at(lambda w: (w.weight, w.drop), windows, (windows.weight / factor, windows.drop / factor))
         other = eqx.tree_at(lambda p: p.windows, problem, windows)
-        return score(other, first_guess(other), layout, group=group)[0][0]
+        return score(other, first_guess(other), layout, group=group, through=bool(bench.outright))[0][0]

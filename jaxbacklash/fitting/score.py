@@ -50,7 +50,9 @@ def frozen(problem: Problem, theta: Any) -> Problem:
     )
 
 
-def score(problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 2) -> tuple[tuple[Score, ...], Unknowns]:
+def score(
+    problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 2, through: bool = False
+) -> tuple[tuple[Score, ...], Unknowns]:
     """Score the parameters of ``unknowns`` on all windows.
 
     Parameters
@@ -59,6 +61,8 @@ def score(problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 
     unknowns : parameters to judge, and starts near the right ones
     layout : where each record sits
     group : shooting windows per score window
+    through : a record is one trajectory, not one anew in every score window: for a link that is not seen, whose free start would
+        hide what the model lacks
 
     Returns
     -------
@@ -68,7 +72,7 @@ def score(problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 
     tie = np.asarray(problem.windows.tie).copy()
     for first, count in zip(layout.first, layout.windows):
         index = np.arange(count)
-        tie[first : first + count] *= (index % group) != group - 1
+        tie[first : first + count] *= through | (index % group != group - 1)
     still = eqx.tree_at(lambda p: (p.windows.tie, p.tie), still, (tie, np.asarray(1.0)))
     begin = Unknowns(np.zeros(unknowns.theta.shape), unknowns.starts, unknowns.coefficients)
     near = NEAR * max(1, int(problem.windows.used))
