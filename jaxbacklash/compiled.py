@@ -15,6 +15,7 @@ import os
 import pickle
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import Future
@@ -53,31 +54,49 @@ def kept_jit(function: Callable[..., Any]) -> Callable[..., Any]:
 
     Arguments are positional. A program is not kept, only jitted, where its arguments hold classes or functions of other
     packages (a user's own law may change without changing its name), and where it is called within another traced
-    function. A kept file that cannot be read is made anew. What the result's ``programs`` holds is what this process uses.
+    function. A kept file that cannot be read is made anew. What the result's ``programs`` holds is what this process uses. Its
+    ``ready`` takes the same arguments and does all but the computing: threads can have the compiler at work side by side.
     """
     jitted = eqx.filter_jit(function)
-    programs: dict[Key, Any] = {}
+    programs: dict[Key, Future[Any]] = {}
+    lock = threading.Lock()
 
-    @functools.wraps(function)
-    def call(*args: Any) -> Any:
+    def made(args: Any) -> tuple[Any, list[Any]]:
+        """What to call, and the arrays to call it with."""
         setting: Any = jax.config
         folder = setting.jax_compilation_cache_dir
         leaves, structure = jax.tree.flatten(args)
         if folder is None or any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
-            return jitted(*args)
+            return jitted, []
         arrays = [leaf for leaf in leaves if _is_array(leaf)]
         kinds = tuple((a.shape, str(a.dtype), bool(getattr(a, "weak_type", False))) for a in arrays)
-        fixed = tuple(_Here if _is_array(leaf) else leaf for leaf in leaves)
+        key = (structure, tuple(_Here if _is_array(leaf) else leaf for leaf in leaves), kinds)
         try:
-            program = programs.get((structure, fixed, kinds))
+            with lock:
+                mine = key not in programs
+                coming = programs.setdefault(key, Future())
         except TypeError:  # a fixed part that cannot be told from others
-            return jitted(*args)
-        if program is None:
-            program = _find(function, args, kinds, Path(folder) / "programs") or jitted
-            programs[structure, fixed, kinds] = program
+            return jitted, []
+        if mine:  # another thread that asks for the same program waits for this one
+            try:
+                coming.set_result(_find(function, args, kinds, Path(folder) / "programs") or jitted)
+            except BaseException as error:
+                del programs[key]
+                coming.set_exception(error)
+                raise
+        return coming.result(), arrays
+
+    @functools.wraps(function)
+    def call(*args: Any) -> Any:
+        program, arrays = made(args)
         return program(arrays) if isinstance(program, _Program) else program(*args)
 
-    call.programs = programs  # type: ignore[attr-defined]
+    def ready(*args: Any) -> None:
+        program, _ = made(args)
+        if isinstance(program, _Program):
+            program.link()
+
+    call.programs, call.ready = programs, ready  # type: ignore[attr-defined]
     return call
 
 
@@ -94,9 +113,19 @@ class _Program:
 
     def __init__(self, exported: jax.export.Exported, frame: Any, call: Any = None):
         self.exported, self.frame, self.call = exported, frame, call or caller(exported)
+        self.linked, self.lock = call is not None, threading.Lock()
         self.plain = exported.nr_devices > 1 or exported.platforms == ("cpu",)
 
+    def link(self) -> None:
+        """Compile it, or read what was compiled before, so that the first call need not."""
+        with self.lock:
+            if not self.linked:
+                shapes = [jax.ShapeDtypeStruct(v.shape, v.dtype) for v in self.exported.in_avals]
+                self.call.lower(shapes).compile()
+            self.linked = True
+
     def __call__(self, arrays: list[Any]) -> Any:
+        self.link()
         # An array that sits on one device cannot be handed to several; and for one that came out of another program, a program
         # would be compiled once more. On a CPU numpy's view of it costs nothing.
         results = iter(self.call([np.asarray(a) for a in arrays] if self.plain else arrays))

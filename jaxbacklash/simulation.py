@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-import diffrax
 import equinox as eqx
 import jax
 import jax.numpy as jnp
@@ -20,7 +19,6 @@ from .excitation import AbstractExcitation, Rest, Sampled
 from .mechanics import Drive
 from .precision import require_double_precision
 from .records import Record
-from .solvers.substeps import DrivenTerm, PanelRK4
 from .system import System
 
 Array = Any
@@ -129,6 +127,8 @@ def default_panels(system: System, rate: float) -> int:
 
 @eqx.filter_jit
 def _fixed(args: Driven, state: Any, dt: Any, intervals: int, every: int, located: bool) -> Any:
+    from .solvers.panel_solver import DrivenTerm, PanelRK4  # diffrax loads a quarter of a second, for which few commands wait
+
     # One step of the solver is the whole run. `diffrax.diffeqsolve` would ask for no other, in a larger program.
     solver = PanelRK4(intervals * every, intervals, located)
     edges = solver.step(DrivenTerm(), 0.0, dt * intervals, state, args, None, False)[2]["edges"]
@@ -137,6 +137,10 @@ def _fixed(args: Driven, state: Any, dt: Any, intervals: int, every: int, locate
 
 @eqx.filter_jit
 def _adaptive(args: Driven, state: Any, dt: Any, samples: int, rtol: float, atol: float) -> Any:
+    import diffrax
+
+    from .solvers.panel_solver import DrivenTerm
+
     times = dt * jnp.arange(samples)
     solution = diffrax.diffeqsolve(
         DrivenTerm(), diffrax.Dopri8(), times[0], times[-1], dt, state, args,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import equinox as eqx
@@ -56,7 +58,7 @@ def test_what_came_out_of_a_program_goes_in_without_another(cache, committed):
     a = np.arange(4.0)
     found = call(None, a, a, 2)["b"]
     call(None, jax.device_put(found, jax.devices()[-1]) if committed else found, a, 2)
-    (program,) = call.programs.values()
+    (program,) = (made.result() for made in call.programs.values())
     assert program.call._cache_size() == 1
 
 
@@ -69,6 +71,43 @@ def test_another_shape_kind_structure_or_fixed_part_is_another_program(cache, ot
     process(traced)(None, np.arange(4.0), None, 2)
     process(traced)(*other)
     assert len(traced) == 2
+
+
+def slow(traced: list[str], fails: list[BaseException]):
+    """As `process`, for a function that takes a while to trace, and may raise then."""
+
+    def work(a):
+        traced.append("traced")
+        time.sleep(0.2)
+        if fails:
+            raise fails.pop()
+        return jnp.sum(a)
+
+    work.__module__ = "jaxbacklash.fitting.work"
+    return kept_jit(work)
+
+
+def test_threads_that_ask_for_the_same_program_make_it_once(cache):
+    traced: list[str] = []
+    call = slow(traced, [])
+    with ThreadPoolExecutor(2) as threads:
+        ahead = threads.submit(call.ready, np.arange(4.0))
+        found = [threads.submit(call, np.arange(4.0)) for _ in range(3)]
+        assert [float(one.result()) for one in found] == [6.0] * 3
+    assert ahead.result() is None
+    assert traced == ["traced"]
+    (program,) = (made.result() for made in call.programs.values())
+    assert program.linked
+    assert program.call._cache_size() == 1
+
+
+def test_a_program_that_could_not_be_made_is_asked_for_again(cache):
+    traced: list[str] = []
+    call = slow(traced, [KeyboardInterrupt()])
+    with pytest.raises(KeyboardInterrupt):
+        call(np.arange(4.0))
+    assert float(call(np.arange(4.0))) == 6.0
+    assert traced == ["traced", "traced"]
 
 
 def test_where_an_array_stands_matters(cache):
@@ -162,7 +201,7 @@ def test_what_a_command_used_is_read_before_it_is_asked_for_again(cache, nothing
     with reading_ahead("fit", cache.parent):
         _, ready = compiled.ahead[name].result()
         found = call(None, a, None, 2)["sum"]
-        (program,) = call.programs.values()
+        (program,) = (made.result() for made in call.programs.values())
         assert program.call is ready
     assert found == pytest.approx(14.0)
     assert traced == ["traced"]

@@ -13,10 +13,9 @@ from jaxbacklash.dynamics.plan import Plan
 from jaxbacklash.excitation import Chirp
 from jaxbacklash.models import base_motion_joint
 from jaxbacklash.simulation import Driven, default_panels, simulate
-from jaxbacklash.solvers import PanelRK4
 from jaxbacklash.solvers.exact_courses import Along, ExactCourse
 from jaxbacklash.solvers.exact_periods import ExactPeriods, Pieces, begin
-from jaxbacklash.solvers.substeps import DrivenTerm
+from jaxbacklash.solvers.panel_solver import DrivenTerm, PanelRK4
 
 PLAN = Plan(40, 10, 8)
 

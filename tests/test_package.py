@@ -88,6 +88,16 @@ assert not [name for name, value in names.items() if isinstance(value, types.Mod
     assert fresh(code) == ""
 
 
+def test_a_command_whose_programs_are_kept_waits_for_no_library_that_only_traces():
+    code = """
+import sys
+import jaxbacklash.commands.refine, jaxbacklash.commands.fit, jaxbacklash.commands.diagnose
+late = {"diffrax", "optimistix", "lineax", "scipy.signal", "scipy.stats", "matplotlib"} & set(sys.modules)
+assert not late, late
+"""
+    assert fresh(code) == ""
+
+
 def test_version():
     import jaxbacklash
 

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import equinox as eqx
 import numpy as np
-import optimistix as optx
 
-from ..fitting.levenberg import ArrowLevenbergMarquardt, minimise
+from ..fitting.levenberg import Levenberg, Minimum, minimise
 from ..fitting.score import kept_residuals
 from ..fitting.search import TIES, tie_windows
 from ..fitting.setup import first_guess
@@ -39,7 +38,7 @@ def cut_free(bench: Workbench, free: Trial) -> np.ndarray | None:
     """
     problem, _ = bench.problem(bench.effects(free), free.system)
     begin = Unknowns(first_guess(problem).theta, free.unknowns.starts, free.unknowns.coefficients)
-    alone, _ = _misses(problem, minimise(problem, begin, ArrowLevenbergMarquardt(limit=1)))
+    alone, _ = _misses(problem, minimise(problem, begin, Levenberg(limit=1)))
     whole = np.asarray(bench.windows.tie)
     ties = whole.copy()
     for _ in range(ROUNDS):
@@ -57,7 +56,7 @@ def cut_free(bench: Workbench, free: Trial) -> np.ndarray | None:
     return None if np.array_equal(ties, whole) else ties
 
 
-def _misses(problem: Problem, solution: optx.Solution) -> tuple[np.ndarray, np.ndarray]:
+def _misses(problem: Problem, solution: Minimum) -> tuple[np.ndarray, np.ndarray]:
     """Each window's sum of squares, (W,), and that of its tie to the next, in units of the noise."""
     squares = [np.asarray(r) ** 2 for r in kept_residuals(problem, solution.value, solution.stats["predicted"])]
     motion, measured, ties = (np.sum(s, axis=1) for s in squares)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -123,7 +124,9 @@ def refine(
     bench = Workbench(record, system, names, window, beside=heldout)
     search = Search(bench, progress)
     clock["prepare"] = time.perf_counter()
-    steps = search.run()
+    with ThreadPoolExecutor(1) as aside:
+        aside.submit(bench.ready)
+        steps = search.run()
     clock["search"] = time.perf_counter()
 
     progress("scoring predictions", 0.85)

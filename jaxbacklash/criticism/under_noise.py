@@ -10,7 +10,7 @@ from __future__ import annotations
 import equinox as eqx
 import numpy as np
 
-from ..fitting.levenberg import ArrowLevenbergMarquardt, minimise
+from ..fitting.levenberg import Levenberg, minimise
 from ..fitting.search import TIES
 from ..fitting.shooting import Prediction, Unknowns
 from ..mechanics import AbstractEffect
@@ -45,7 +45,7 @@ def promised(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> tuple
 
     def answer(torque: np.ndarray) -> tuple[float, Prediction]:
         pushed = eqx.tree_at(lambda p: p.windows.force, problem, applied + torque)
-        stats = minimise(pushed, unknowns, ArrowLevenbergMarquardt(atol=1e-4, damping=1e-9, limit=STEPS)).stats
+        stats = minimise(pushed, unknowns, Levenberg(atol=1e-4, damping=1e-9, limit=STEPS)).stats
         return float(stats["cost"]), stats["predicted"]
 
     still, predicted = answer(np.zeros(()))

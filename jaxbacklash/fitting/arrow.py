@@ -7,7 +7,6 @@ from typing import Any
 import equinox as eqx
 import jax.numpy as jnp
 import jax.scipy.linalg as jsl
-import lineax as lx
 
 from .chunks import scan_used
 from .shooting import Blocks
@@ -85,6 +84,8 @@ def solve(
 
 
 def _solve_scaled(matrix: Array, right: Array) -> Array:
+    import lineax as lx  # asked for only while tracing
+
     # Parameters that nothing determines leave a zero row; scaling and a whisper of ridge keep the step finite.
     scale = jnp.sqrt(jnp.maximum(jnp.diagonal(matrix), 1e-300))
     scaled = matrix / scale[:, None] / scale[None, :]

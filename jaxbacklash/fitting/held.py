@@ -19,7 +19,7 @@ from ..effects import Contact
 from ..mechanics import Drive
 from ..system import System
 from .chunks import scan_used
-from .levenberg import ArrowLevenbergMarquardt, minimise
+from .levenberg import Levenberg, minimise
 from .shooting import Problem, Unknowns, local_coefficients, trajectory
 
 Array = Any
@@ -76,7 +76,7 @@ def run(problem: Problem, theta: Any) -> tuple[Unknowns, dict[str, Any]]:
     coefficients = np.asarray(problem.windows.coefficients)
     unknowns = Unknowns(np.asarray(theta), np.asarray(march(problem, theta, coefficients)), coefficients)
     tied = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIE))
-    return unknowns, minimise(tied, unknowns, ArrowLevenbergMarquardt(limit=1)).stats
+    return unknowns, minimise(tied, unknowns, Levenberg(limit=1)).stats
 
 
 def search_held(

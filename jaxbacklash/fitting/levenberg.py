@@ -1,4 +1,4 @@
-"""Levenberg-Marquardt for the multiple-shooting arrow, as an optimistix least-squares solver."""
+"""The search for a minimum of the multiple-shooting misfit: optimistix with a Levenberg-Marquardt of our own."""
 
 from __future__ import annotations
 
@@ -8,109 +8,57 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 import numpy as np
-import optimistix as optx
 
 from ..compiled import kept_jit
-from .arrow import solve
-from .shooting import Blocks, Prediction, Problem, Unknowns, linearise
+from .shooting import Problem, Unknowns
 
 Array = Any
-_linearise = eqx.filter_jit(linearise)  # traced once, though a search writes it down three times
 
 
-class ArrowState(eqx.Module):
-    """Where the search stands: ``blocks`` and ``predicted`` at the best point, the ``trial`` that is looked at next, ``damping``,
-    ``gain`` the decrease of the cost that the step to it promises, ``steps`` linearisations so far."""
+class Levenberg(eqx.Module):
+    """How a search goes, as data.
 
-    blocks: Blocks
-    predicted: Prediction
-    trial: Unknowns
-    damping: Array
-    gain: Array
-    steps: Array
-
-
-class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
-    """Levenberg-Marquardt whose linear algebra knows the arrow (`jaxbacklash.fitting.arrow`).
-
-    ``fn`` is not differentiated as a whole: ``args`` is the `Problem`, whose blocks are built by
-    `jaxbacklash.fitting.shooting.linearise`. The search ends when a full step promises to lower half the sum of squares by less
-    than ``atol`` (in units of the noise, so 1e-3 means that no parameter would move by 5 % of its standard error), or by
-    less than ``rtol`` of what it exceeds the noise by, or after ``limit`` linearisations; a limit of 1 only looks at the start.
+    It ends when a full step promises to lower half the sum of squares by less than ``atol`` (in units of the noise, so 1e-3 means
+    that no parameter would move by 5 % of its standard error), or by less than ``rtol`` of what it exceeds the noise by, or
+    after ``limit`` linearisations; a limit of 1 only looks at the start. ``damping`` is the first.
     """
 
     rtol: Array = eqx.field(default=0.0, converter=np.asarray)
     atol: Array = eqx.field(default=1e-3, converter=np.asarray)
     damping: Array = eqx.field(default=1e-3, converter=np.asarray)
     limit: Array = eqx.field(default=60, converter=np.asarray)
-    norm: Any = eqx.field(default=optx.max_norm, static=True)
-
-    def init(self, fn: Any, y: Unknowns, args: Problem, options: Any, f_struct: Any, aux_struct: Any, tags: Any) -> ArrowState:
-        shapes = eqx.filter_eval_shape(_linearise, args, y)
-        blocks, predicted = jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), shapes)
-        blocks = eqx.tree_at(lambda b: b.cost, blocks, jnp.asarray(jnp.inf))
-        return ArrowState(blocks, predicted, y, jnp.asarray(self.damping), jnp.asarray(jnp.inf), jnp.asarray(0))
-
-    def step(
-        self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any
-    ) -> tuple[Unknowns, ArrowState, Any]:
-        blocks, predicted = _linearise(args, state.trial)
-        # The first call looks at the start, whatever it is worth.
-        better = (blocks.cost < state.blocks.cost) | (state.steps == 0)
-        pick = lambda new, old: jnp.where(better, new, old)  # noqa: E731
-        blocks = jax.tree.map(pick, blocks, state.blocks)
-        y = jax.tree.map(pick, state.trial, y)
-        damping = jnp.where(better, jnp.maximum(0.1 * state.damping, 1e-12), jnp.clip(10.0 * state.damping, 1e-7, 1e12))
-        damping = jnp.where(state.steps == 0, self.damping, damping)
-
-        solution = solve(blocks, damping, args.windows.used)
-        n = y.starts.shape[0]
-        theta = jnp.clip(y.theta + solution.theta, args.lower, args.upper)
-        theta = jnp.where(args.shrink, _keep_sign(args, y.theta, theta), theta)
-        trial = Unknowns(theta, y.starts + solution.local[:, :n].T, y.coefficients + solution.local[:, n:])
-        promise = -0.5 * (jnp.sum(blocks.slope * solution.local) + jnp.sum(blocks.slope_theta * solution.theta))
-        predicted = jax.tree.map(pick, predicted, state.predicted)
-        return y, ArrowState(blocks, predicted, trial, damping, promise, state.steps + 1), None
-
-    def terminate(self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any) -> Any:
-        # Where the model misfits, the noise is no measure of what matters: the misfit is.
-        rows = jnp.sum(args.windows.weight > 0.0)
-        cost = state.blocks.cost
-        small = state.gain < self.atol * jnp.maximum(1.0, 2.0 * cost / (rows + 1.0)) + self.rtol * jnp.maximum(cost - rows, 0.0)
-        # A promise under heavy damping says little; wait until the damping has come down or nothing helps any more.
-        done = (small & (state.damping < 1.0)) | (state.damping > 1e11) | (state.steps >= self.limit)
-        return done & (state.steps > 0), optx.RESULTS.successful
-
-    def postprocess(
-        self, fn: Any, y: Unknowns, aux: Any, args: Problem, options: Any, state: ArrowState, tags: Any, result: Any
-    ) -> Any:
-        undamped = solve(state.blocks, jnp.asarray(0.0), args.windows.used)
-        stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps}
-        return y, aux, stats | {"schur": undamped.schur, "pull": undamped.pull}
 
 
-def _keep_sign(problem: Problem, old: Array, new: Array) -> Array:
-    # Bounds on the value itself: between a third and three times the present one.
-    scale = jnp.sum(problem.directions, axis=0)
-    offset = jnp.sum(jnp.where(problem.directions != 0.0, problem.base[:, None], 0.0), axis=0)
-    value = offset + scale * old
-    wanted = offset + scale * new
-    return (jnp.clip(wanted, value / 3.0, value * 3.0) - offset) / scale
+class Minimum(eqx.Module):
+    """Where a search ended: ``value``, and ``stats``: the ``cost``, what was ``predicted``, the ``steps`` taken, the ``schur``
+    information and the ``pull``, both undamped."""
+
+    value: Unknowns
+    stats: dict[str, Any]
 
 
-def minimise(problem: Problem, start: Unknowns, solver: ArrowLevenbergMarquardt, max_steps: int = 200) -> optx.Solution:
-    """Run the search from ``start``; the solution's ``stats`` hold the ``cost``, what was ``predicted``, the ``steps`` taken, the
-    ``schur`` information and the ``pull``, both undamped."""
+def minimise(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int = 200) -> Minimum:
+    """Run the search from ``start``."""
     # As NumPy arrays: what comes back from several devices would tie all later computations to them.
-    return jax.tree.map(np.asarray, _minimise(problem, start, solver, max_steps))
+    return Minimum(*jax.tree.map(np.asarray, _minimise(problem, start, how, max_steps)))
+
+
+def ready(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int = 200) -> None:
+    """Compile what `minimise` will run."""
+    _minimise.ready(problem, start, how, max_steps)  # type: ignore[attr-defined]
 
 
 @kept_jit
-def _minimise(problem: Problem, start: Unknowns, solver: ArrowLevenbergMarquardt, max_steps: int) -> optx.Solution:
+def _minimise(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int) -> tuple[Unknowns, dict[str, Any]]:
+    # Asked for only while tracing: a program that was kept need not wait for optimistix, diffrax and lineax to load.
+    import optimistix as optx
+
+    from .arrow_levenberg import ArrowLevenbergMarquardt
 
     def residual(y: Unknowns, args: Problem) -> Array:
         # optimistix asks only for its structure: the solver builds residuals and blocks together.
         return jnp.zeros(())
 
-    solution: optx.Solution = optx.least_squares(residual, solver, start, args=problem, max_steps=max_steps, throw=False)
-    return eqx.tree_at(lambda s: (s.state, s.result), solution, (None, None))
+    solver = ArrowLevenbergMarquardt(rtol=how.rtol, atol=how.atol, damping=how.damping, limit=how.limit)
+    found: optx.Solution = optx.least_squares(residual, solver, start, args=problem, max_steps=max_steps, throw=False)
+    return found.value, found.stats

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from .estimates import NORMAL_95, Estimate
-from .levenberg import ArrowLevenbergMarquardt, minimise
+from .levenberg import Levenberg, minimise
 from .shooting import Problem, Unknowns
 
 
@@ -42,7 +42,7 @@ def interval(problem: Problem, unknowns: Unknowns, j: int, stderr: float) -> tup
     stderr : its standard error, in its own unit, to know where to look
     """
     # At a tighter stop than a fit's: differences of the cost are what counts here.
-    solver = ArrowLevenbergMarquardt(atol=1e-5)
+    solver = Levenberg(atol=1e-5)
     scale = float(np.sum(problem.directions[:, j]))
     centre = float(np.sum(np.where(problem.directions[:, j] != 0.0, problem.parameters(unknowns.theta), 0.0)))
     others = np.arange(problem.shrink.size) != j

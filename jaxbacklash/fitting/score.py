@@ -13,7 +13,7 @@ import equinox as eqx
 import numpy as np
 
 from ..compiled import kept_jit
-from .levenberg import ArrowLevenbergMarquardt, minimise
+from .levenberg import Levenberg, minimise
 from .shooting import Problem, Unknowns, residuals
 from .windows import Layout
 
@@ -76,7 +76,7 @@ def score(
     still = eqx.tree_at(lambda p: (p.windows.tie, p.tie), still, (tie, np.asarray(1.0)))
     begin = Unknowns(np.zeros(unknowns.theta.shape), unknowns.starts, unknowns.coefficients)
     near = NEAR * max(1, int(problem.windows.used))
-    solution = minimise(still, begin, ArrowLevenbergMarquardt(atol=near, damping=1e-6, limit=20))
+    solution = minimise(still, begin, Levenberg(atol=near, damping=1e-6, limit=20))
     found = solution.value
     predicted = solution.stats["predicted"]
     scores = tuple(_summarise(still, found, predicted, layout, group, i) for i in range(len(layout.first)))

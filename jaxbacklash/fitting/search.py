@@ -7,12 +7,11 @@ from dataclasses import dataclass
 
 import equinox as eqx
 import numpy as np
-import optimistix as optx
 
 from ..errors import NoAnswer
 from ..system import System
 from .held import correlation, held, search_held
-from .levenberg import ArrowLevenbergMarquardt, minimise
+from .levenberg import Levenberg, Minimum, minimise
 from .setup import first_guess, make_problem
 from .shooting import Problem, Unknowns
 from .stretch import excess_of, stretch, told
@@ -28,7 +27,7 @@ trajectory and a sharp one to make it one; the loose one alone."""
 
 
 NEAR = 0.1
-"""How near to the minimum a search comes that is not the last, as `ArrowLevenbergMarquardt.atol`."""
+"""How near to the minimum a search comes that is not the last, as `Levenberg.atol`."""
 
 NOWHERE = "no start led to a finite misfit: the record may hold something else than this model's motion"
 
@@ -82,7 +81,7 @@ def search(
                 best, problem, cost, tied = solution, joined, after, True
                 break
     if not tied:
-        best = minimise(problem, best.value, ArrowLevenbergMarquardt())
+        best = minimise(problem, best.value, Levenberg())
         cost, steps = float(best.stats["cost"]), steps + int(best.stats["steps"])
     scale = np.sum(np.asarray(problem.directions), axis=0)
     covariance = inverse_information(np.asarray(best.stats["schur"])) * np.outer(scale, scale)
@@ -91,7 +90,7 @@ def search(
 
 def _from_starts(
     problem: Problem, guess: Unknowns, starts: int, seed: int, rough: bool, progress: Callable[[str, float], None]
-) -> tuple[optx.Solution, int, int, int]:
+) -> tuple[Minimum, int, int, int]:
     """Free windows from several starts: the best solution, the steps taken, and how many starts agree of how many tried.
 
     They are compared on a stretch of the record where it tells all parameters, and only the best goes on to the whole.
@@ -110,7 +109,7 @@ def _from_starts(
         if part is not problem:
             progress("fitting, the whole record", 0.55)
             whole = eqx.tree_at(lambda u: u.theta, guess, best.value.theta)
-            best = minimise(problem, whole, ArrowLevenbergMarquardt(atol=NEAR))
+            best = minimise(problem, whole, Levenberg(atol=NEAR))
             steps += int(best.stats["steps"])
         if np.isfinite(best.stats["cost"]):
             return best, steps, agreeing, len(arrived)
@@ -119,14 +118,14 @@ def _from_starts(
 
 def _arrive(
     problem: Problem, guess: Unknowns, starts: int, seed: int, progress: Callable[[str, float], None]
-) -> list[optx.Solution]:
+) -> list[Minimum]:
     """Where each start arrives, the best first."""
     rng = np.random.default_rng(seed)
     arrived = []
     for attempt in range(starts):
         progress(f"fitting, start {attempt + 1} of {starts}", 0.05 + 0.5 * attempt / starts)
         begin = eqx.tree_at(lambda u: u.theta, guess, _elsewhere(problem, rng)) if attempt else guess
-        arrived.append(minimise(problem, begin, ArrowLevenbergMarquardt(atol=NEAR)))
+        arrived.append(minimise(problem, begin, Levenberg(atol=NEAR)))
     return sorted((one for one in arrived if np.isfinite(one.stats["cost"])), key=lambda one: float(one.stats["cost"]))
 
 
@@ -177,10 +176,10 @@ def _search_held(
 
 def tie_windows(
     problem: Problem, unknowns: Unknowns, ties: Sequence[float], *, limit: int = 60
-) -> tuple[Problem, optx.Solution, int]:
+) -> tuple[Problem, Minimum, int]:
     """Tie the windows as sharply as ``ties`` say, one after the other: the tied problem, its solution, the steps taken."""
     # Free windows end close to the tied ones: a damped step would only fight the ties, which are stiff.
-    solver, steps = ArrowLevenbergMarquardt(damping=1e-9, limit=limit), 0
+    solver, steps = Levenberg(damping=1e-9, limit=limit), 0
     for tightness in ties:
         problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(tightness))
         solution = minimise(problem, unknowns, solver)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import equinox as eqx
 import numpy as np
-import optimistix as optx
 
+from .levenberg import Minimum
 from .shooting import Problem, Unknowns, per_window
 
 STRETCH = 64
@@ -54,7 +54,7 @@ def stretch(problem: Problem, guess: Unknowns) -> tuple[Problem | None, Unknowns
     return part, Unknowns(guess.theta, own(np.asarray(guess.starts).T).T, own(guess.coefficients))
 
 
-def told(found: optx.Solution, part: Problem) -> bool:
+def told(found: Minimum, part: Problem) -> bool:
     """Whether a stretch tells every parameter: each error small beside its scale, and no value at its bound."""
     theta, schur = np.asarray(found.value.theta), np.asarray(found.stats["schur"])
     inside = np.all((theta > np.asarray(part.lower)) & (theta < np.asarray(part.upper)))
@@ -67,7 +67,7 @@ def told(found: optx.Solution, part: Problem) -> bool:
     return bool(np.all((variance > 0.0) & (variance < TOLD**2)))
 
 
-def excess_of(found: optx.Solution, part: Problem) -> float:
+def excess_of(found: Minimum, part: Problem) -> float:
     """By how much the squared misfit exceeds the noise's, at least 1."""
     rows = float(np.sum(np.asarray(part.windows.weight) > 0.0))
     return max(1.0, 2.0 * float(found.stats["cost"]) / rows)
