@@ -11,21 +11,26 @@ import jax.numpy as jnp
 import optimistix as optx
 
 from .arrow import solve
-from .shooting import Blocks, Prediction, Problem, Unknowns, linearise
+from .shooting import Blocks, Prediction, Problem, Unknowns, linearise, shoot
 
 Array = Any
-_linearise = eqx.filter_jit(linearise)  # traced once, though a search writes it down three times
+_shoot, _linearise = eqx.filter_jit(shoot), eqx.filter_jit(linearise)  # traced once, though a search writes them down thrice
+
+
+PROMISED = 10.0
+"""How many times what may be left to gain a step may promise where the last one kept less than that."""
 
 
 class ArrowState(eqx.Module):
     """Where the search stands: ``blocks`` and ``predicted`` at the best point, the ``trial`` that is looked at next, ``damping``,
-    ``gain`` the decrease of the cost that the step to it promises, ``steps`` linearisations so far."""
+    ``gain`` the decrease of the cost that the step to it promises, ``fell`` the last decrease, ``steps`` tried so far."""
 
     blocks: Blocks
     predicted: Prediction
     trial: Unknowns
     damping: Array
     gain: Array
+    fell: Array
     steps: Array
 
 
@@ -43,19 +48,22 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
     norm: Any = eqx.field(default=optx.max_norm, static=True)
 
     def init(self, fn: Any, y: Unknowns, args: Problem, options: Any, f_struct: Any, aux_struct: Any, tags: Any) -> ArrowState:
-        shapes = eqx.filter_eval_shape(_linearise, args, y)
+        shot = eqx.filter_eval_shape(_shoot, args, y)
+        shapes = eqx.filter_eval_shape(_linearise, args, y, shot), shot.predicted
         blocks, predicted = jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), shapes)
-        blocks = eqx.tree_at(lambda b: b.cost, blocks, jnp.asarray(jnp.inf))
-        return ArrowState(blocks, predicted, y, jnp.asarray(self.damping), jnp.asarray(jnp.inf), jnp.asarray(0))
+        far = jnp.asarray(jnp.inf)
+        blocks = eqx.tree_at(lambda b: b.cost, blocks, far)
+        return ArrowState(blocks, predicted, y, jnp.asarray(self.damping), far, far, jnp.asarray(0))
 
     def step(
         self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any
     ) -> tuple[Unknowns, ArrowState, Any]:
-        blocks, predicted = _linearise(args, state.trial)
+        shot = _shoot(args, state.trial)
         # The first call looks at the start, whatever it is worth.
-        better = (blocks.cost < state.blocks.cost) | (state.steps == 0)
+        better = (shot.cost < state.blocks.cost) | (state.steps == 0)
         pick = lambda new, old: jnp.where(better, new, old)  # noqa: E731
-        blocks = jax.tree.map(pick, blocks, state.blocks)
+        fell = pick(state.blocks.cost - shot.cost, state.fell)
+        blocks = jax.lax.cond(better, lambda: _linearise(args, state.trial, shot), lambda: state.blocks)
         y = jax.tree.map(pick, state.trial, y)
         damping = jnp.where(better, jnp.maximum(0.1 * state.damping, 1e-12), jnp.clip(10.0 * state.damping, 1e-7, 1e12))
         damping = jnp.where(state.steps == 0, self.damping, damping)
@@ -66,14 +74,16 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         theta = jnp.where(args.shrink, _keep_sign(args, y.theta, theta), theta)
         trial = Unknowns(theta, y.starts + solution.local[:, :n].T, y.coefficients + solution.local[:, n:])
         promise = -0.5 * (jnp.sum(blocks.slope * solution.local) + jnp.sum(blocks.slope_theta * solution.theta))
-        predicted = jax.tree.map(pick, predicted, state.predicted)
-        return y, ArrowState(blocks, predicted, trial, damping, promise, state.steps + 1), None
+        predicted = jax.tree.map(pick, shot.predicted, state.predicted)
+        return y, ArrowState(blocks, predicted, trial, damping, promise, fell, state.steps + 1), None
 
     def terminate(self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any) -> Any:
         # Where the model misfits, the noise is no measure of what matters: the misfit is.
         rows = jnp.sum(args.windows.weight > 0.0)
         cost = state.blocks.cost
-        small = state.gain < self.atol * jnp.maximum(1.0, 2.0 * cost / (rows + 1.0)) + self.rtol * jnp.maximum(cost - rows, 0.0)
+        least = self.atol * jnp.maximum(1.0, 2.0 * cost / (rows + 1.0)) + self.rtol * jnp.maximum(cost - rows, 0.0)
+        # Where dry friction makes the cost jagged, a little is promised for ever and next to nothing kept.
+        small = (state.gain < least) | ((state.fell < least) & (state.gain < PROMISED * least))
         # A promise under heavy damping says little; wait until the damping has come down or nothing helps any more.
         done = (small & (state.damping < 1.0)) | (state.damping > 1e11) | (state.steps >= self.limit)
         return done & (state.steps > 0), optx.RESULTS.successful

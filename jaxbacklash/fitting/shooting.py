@@ -212,19 +212,57 @@ def tie_weights(problem: Problem, states: int) -> Array:
     return problem.tie * w.tie[:, None] * drop
 
 
-def linearise(problem: Problem, unknowns: Unknowns) -> tuple[Blocks, Prediction]:
-    """Residuals and the blocks of the normal equations at a point.
+class Shot(eqx.Module):
+    """All windows run through: what they ``predicted``, ``states`` (W, P) and the input ``u``, ``du`` (W, P+1) along them, the
+    residuals ``motion``, ``input`` and ``tie`` in units of the noise, ``cost`` half the sum of their squares."""
+
+    predicted: Prediction
+    states: tuple[Array, ...]
+    u: Array
+    du: Array
+    motion: Array
+    input: Array
+    tie: Array
+    cost: Array
+
+
+def shoot(problem: Problem, unknowns: Unknowns) -> Shot:
+    """Run through all windows: a sixth of the work of a linearisation, and all that is needed to turn a step down."""
+    shot = by_chunks(_shoot, (_bare(problem), unknowns.theta), _windows(problem, unknowns), problem.windows.used)
+    w = problem.windows
+    change = unknowns.coefficients - w.coefficients
+    return eqx.tree_at(lambda s: s.cost, shot, jnp.sum(shot.cost) + 0.5 * _whisper(w) * jnp.sum(change**2))
+
+
+def _shoot(shared: tuple[Problem, Array], own: Window) -> Shot:
+    problem, theta = shared
+    problem = eqx.tree_at(per_window, problem, own.data, is_leaf=lambda v: v is None)
+    predicted, states, u, du = _predict(problem, theta, own.start.T, own.local)
+    motion, base, tie = _residuals(problem.windows, predicted, own.following, tie_weights(problem, own.start.shape[1]))
+    cost = 0.5 * (jnp.sum(motion**2, axis=1) + jnp.sum(base**2, axis=1) + jnp.sum(tie**2, axis=1))
+    return Shot(predicted, states, u, du, motion, base, tie, cost)
+
+
+def linearise(problem: Problem, unknowns: Unknowns, shot: Shot) -> Blocks:
+    """The blocks of the normal equations at a point where the windows were run through.
 
     Each window has n + m + 5 unknowns and meets the q parameters; the derivatives come from `tangents.rows`.
     """
     n, q, m = unknowns.starts.shape[0], unknowns.theta.shape[0], problem.windows.intervals
+    lead = _windows(problem, unknowns), eqx.tree_at(lambda s: (s.cost, s.predicted), shot, (None, None))
+    met = by_chunks(_meet, (_bare(problem), unknowns.theta), lead, problem.windows.used)
+    blocks = assemble(met.gram, met.slope, met.end_rows, shot.tie, met.tie_weight, met.seen, n, m, q, shot.cost)
+    return _ridge(problem, unknowns, blocks, n)
+
+
+def _windows(problem: Problem, unknowns: Unknowns) -> Window:
     starts = unknowns.starts.T
     following = jnp.concatenate([starts[1:], starts[:1]])
-    lead = Window(per_window(problem), starts, following, local_coefficients(unknowns.coefficients))
-    bare = eqx.tree_at(per_window, problem, replace=(None,) * len(per_window(problem)), is_leaf=lambda v: v is None)
-    met = by_chunks(_meet, (bare, unknowns.theta), lead, problem.windows.used)
-    blocks = assemble(met.gram, met.slope, met.end_rows, met.tie, met.tie_weight, met.seen, n, m, q, jnp.sum(met.cost))
-    return _ridge(problem, unknowns, blocks, n), met.predicted
+    return Window(per_window(problem), starts, following, local_coefficients(unknowns.coefficients))
+
+
+def _bare(problem: Problem) -> Problem:
+    return eqx.tree_at(per_window, problem, replace=(None,) * len(per_window(problem)), is_leaf=lambda v: v is None)
 
 
 class Window(eqx.Module):
@@ -238,17 +276,13 @@ class Window(eqx.Module):
 
 class Met(eqx.Module):
     """Each window's own normal equations, in the unknowns it sees (U = n + m + 5 + q): ``gram`` (W, U, U), ``slope`` (W, U),
-    ``end_rows`` (W, U, n) weighted, ``tie`` and ``tie_weight`` (W, n), ``seen`` (W, U) the samples' part of the diagonal of
-    ``gram``, ``cost`` (W,)."""
+    ``end_rows`` (W, U, n) weighted, ``tie_weight`` (W, n), ``seen`` (W, U) the samples' part of the diagonal of ``gram``."""
 
     gram: Array
     slope: Array
     end_rows: Array
-    tie: Array
     tie_weight: Array
     seen: Array
-    cost: Array
-    predicted: Prediction
 
 
 def per_window(problem: Problem) -> tuple[Array, ...]:
@@ -257,30 +291,27 @@ def per_window(problem: Problem) -> tuple[Array, ...]:
     return w.t0, w.measured, w.weight, w.tie, w.input, w.input_weight, w.force
 
 
-def _meet(shared: tuple[Problem, Array], own: Window) -> Met:
-    problem, theta = shared
+def _meet(shared: tuple[Problem, Array], lead: tuple[Window, Shot]) -> Met:
+    (problem, theta), (own, shot) = shared, lead
     problem = eqx.tree_at(per_window, problem, own.data, is_leaf=lambda v: v is None)
     w = problem.windows
     n, q = own.start.shape[1], theta.shape[0]
-    predicted, states, u, du = _predict(problem, theta, own.start.T, own.local)
     basis, lagged = _input_tangents(problem, theta, own.local)
-    motion_rows, end_rows = rows(w, problem.rebuild, theta, problem.active, states, u, du, basis, lagged)
+    motion_rows, end_rows = rows(w, problem.rebuild, theta, problem.active, shot.states, shot.u, shot.du, basis, lagged)
     tie_weight = tie_weights(problem, n)
-    motion, base, tie = _residuals(w, predicted, own.following, tie_weight)
     weighted = jnp.concatenate([motion_rows * w.weight[:, None, :], end_rows * tie_weight[:, None, :]], axis=2)
     gram = jnp.einsum("wir,wjr->wij", weighted, weighted)
     tied = jnp.sum(weighted[:, :, -n:] ** 2, axis=2)
-    slope = jnp.einsum("wir,wr->wi", weighted, jnp.concatenate([motion, tie], axis=1))
+    slope = jnp.einsum("wir,wr->wi", weighted, jnp.concatenate([shot.motion, shot.tie], axis=1))
     if own.local.shape[1]:
         # The input's own samples meet its coefficients alone.
         seen = w.basis[0, : -1 : w.every]
         scaled = seen * w.input_weight[:, :, None]
         by_itself = jnp.einsum("wri,wrj->wij", scaled, scaled)
         gram = gram + jnp.pad(by_itself, ((0, 0), (n, q), (n, q)))
-        slope = slope + jnp.pad(jnp.einsum("wri,wr->wi", scaled, base), ((0, 0), (n, q)))
-    cost = 0.5 * (jnp.sum(motion**2, axis=1) + jnp.sum(base**2, axis=1) + jnp.sum(tie**2, axis=1))
+        slope = slope + jnp.pad(jnp.einsum("wri,wr->wi", scaled, shot.input), ((0, 0), (n, q)))
     seen = jnp.diagonal(gram, axis1=1, axis2=2) - tied
-    return Met(gram, slope, weighted[:, :, -n:], tie, tie_weight, seen, cost, predicted)
+    return Met(gram, slope, weighted[:, :, -n:], tie_weight, seen)
 
 
 def assemble(
@@ -331,10 +362,8 @@ def assemble(
 
 
 def _ridge(problem: Problem, unknowns: Unknowns, blocks: Blocks, n: int) -> Blocks:
-    # Coefficients that hardly touch a sample (the end of a record, empty windows) are held by a whisper of a prior at
-    # the smoothing spline; a thousandth of the weight of one sample changes no estimate.
     w = problem.windows
-    level = 1e-6 * jnp.max(w.input_weight, initial=0.0) ** 2
+    level = _whisper(w)
     change = unknowns.coefficients - w.coefficients
     slope = blocks.slope + jnp.pad(level * change, ((0, 0), (n, 0)))
     size = blocks.diagonal.shape[1]
@@ -345,9 +374,14 @@ def _ridge(problem: Problem, unknowns: Unknowns, blocks: Blocks, n: int) -> Bloc
         diagonal = diagonal + jnp.diag(whisper)
     bare = jnp.diagonal(diagonal, axis1=1, axis2=2) == 0.0
     diagonal = diagonal + jnp.where(bare, 1.0, 0.0)[:, :, None] * jnp.eye(size)
-    cost = blocks.cost + 0.5 * level * jnp.sum(change**2)
     # What no sample has seen is damped like what one has, so that the step stays finite.
     seen = jnp.where(blocks.seen > 0.0, blocks.seen, 1.0)
     return Blocks(
-        diagonal, blocks.below, blocks.border, blocks.corner, slope, blocks.slope_theta, cost, seen, blocks.seen_theta
+        diagonal, blocks.below, blocks.border, blocks.corner, slope, blocks.slope_theta, blocks.cost, seen, blocks.seen_theta
     )
+
+
+def _whisper(w: Windows) -> Array:
+    # Coefficients that hardly touch a sample (the end of a record, empty windows) are held by a whisper of a prior at
+    # the smoothing spline; a thousandth of the weight of one sample changes no estimate.
+    return 1e-6 * jnp.max(w.input_weight, initial=0.0) ** 2
