@@ -16,14 +16,16 @@ from .shooting import Blocks, Prediction, Problem, Unknowns, linearise, shoot
 Array = Any
 _shoot, _linearise = eqx.filter_jit(shoot), eqx.filter_jit(linearise)  # traced once, though a search writes them down thrice
 
-
 PROMISED = 10.0
 """How many times what may be left to gain a step may promise where the last one kept less than that."""
+TURNED_DOWN = 0.25
+"""What a step that is turned down counts: it is simulated and not differentiated."""
 
 
 class ArrowState(eqx.Module):
     """Where the search stands: ``blocks`` and ``predicted`` at the best point, the ``trial`` that is looked at next, ``damping``,
-    ``gain`` the decrease of the cost that the step to it promises, ``fell`` the last decrease, ``steps`` tried so far."""
+    ``gain`` the decrease of the cost that the step to it promises, ``fell`` the last decrease, ``steps`` so far, what was
+    turned down as `TURNED_DOWN` of one."""
 
     blocks: Blocks
     predicted: Prediction
@@ -53,7 +55,7 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         blocks, predicted = jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), shapes)
         far = jnp.asarray(jnp.inf)
         blocks = eqx.tree_at(lambda b: b.cost, blocks, far)
-        return ArrowState(blocks, predicted, y, jnp.asarray(self.damping), far, far, jnp.asarray(0))
+        return ArrowState(blocks, predicted, y, jnp.asarray(self.damping), far, far, jnp.asarray(0.0))
 
     def step(
         self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any
@@ -75,15 +77,17 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         trial = Unknowns(theta, y.starts + solution.local[:, :n].T, y.coefficients + solution.local[:, n:])
         promise = -0.5 * (jnp.sum(blocks.slope * solution.local) + jnp.sum(blocks.slope_theta * solution.theta))
         predicted = jax.tree.map(pick, shot.predicted, state.predicted)
-        return y, ArrowState(blocks, predicted, trial, damping, promise, fell, state.steps + 1), None
+        steps = state.steps + jnp.where(better, 1.0, TURNED_DOWN)
+        return y, ArrowState(blocks, predicted, trial, damping, promise, fell, steps), None
 
     def terminate(self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any) -> Any:
         # Where the model misfits, the noise is no measure of what matters: the misfit is.
         rows = jnp.sum(args.windows.weight > 0.0)
         cost = state.blocks.cost
-        least = self.atol * jnp.maximum(1.0, 2.0 * cost / (rows + 1.0)) + self.rtol * jnp.maximum(cost - rows, 0.0)
+        least = self.atol * jnp.maximum(1.0, 2.0 * cost / (rows + 1.0))
+        small = state.gain < least + self.rtol * jnp.maximum(cost - rows, 0.0)
         # Where dry friction makes the cost jagged, a little is promised for ever and next to nothing kept.
-        small = (state.gain < least) | ((state.fell < least) & (state.gain < PROMISED * least))
+        small = small | ((state.fell < least) & (state.gain < PROMISED * least))
         # A promise under heavy damping says little; wait until the damping has come down or nothing helps any more.
         done = (small & (state.damping < 1.0)) | (state.damping > 1e11) | (state.steps >= self.limit)
         return done & (state.steps > 0), optx.RESULTS.successful

@@ -1,0 +1,75 @@
+"""The search over the arrow: steps that are turned down, and when it has seen enough."""
+
+import equinox as eqx
+import jax
+import numpy as np
+import pytest
+
+from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.fitting.arrow_levenberg import TURNED_DOWN, ArrowLevenbergMarquardt
+from jaxbacklash.fitting.levenberg import Levenberg, minimise
+from jaxbacklash.fitting.search import TIES
+from jaxbacklash.fitting.setup import base_system, first_guess
+from jaxbacklash.fitting.shooting import Unknowns, residuals, shoot
+
+from .hidden import hidden
+
+
+def joint(name, seed, seconds):
+    """A workbench and the problem of the joint with the effect that a record hides, at its true values."""
+    record, rig, effects, _ = hidden(name, "chirp", seed, seconds)
+    base, free, _ = base_system(record, "joint", rig.inertia)
+    bench = Workbench(record, base, free, 0.2)
+    return bench, {n: bench.laws[n](**values) for n, values in effects.items()}
+
+
+def test_a_shot_costs_half_the_sum_of_its_squares():
+    bench, _ = joint(None, 2, 4.0)
+    problem, _ = bench.problem({}, bench.base)
+    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(3.0))
+    guess = first_guess(problem)
+    rng = np.random.default_rng(3)
+    moved = Unknowns(0.01 * rng.standard_normal(guess.theta.shape), guess.starts, guess.coefficients)
+    found = jax.jit(residuals)(problem, moved)
+    shot = jax.jit(shoot)(problem, moved)
+    for mine, other in zip((shot.motion, shot.input, shot.tie), found):
+        np.testing.assert_allclose(mine, other, rtol=1e-9, atol=1e-9)
+    assert float(shot.cost) == pytest.approx(sum(0.5 * np.sum(np.asarray(r) ** 2) for r in found), rel=1e-9)
+
+
+def test_a_step_that_is_turned_down_changes_nothing_but_the_damping():
+    bench, _ = joint(None, 2, 4.0)
+    problem, _ = bench.problem({}, bench.base)
+    solver = ArrowLevenbergMarquardt()
+    guess = first_guess(problem)
+    before = solver.init(None, guess, problem, {}, None, None, None)
+    step = eqx.filter_jit(lambda y, state: solver.step(None, y, problem, {}, state, None)[:2])
+    y, at = step(guess, before)
+    far = eqx.tree_at(lambda s: s.trial.starts, at, at.trial.starts + 1.0)
+    same, after = step(y, far)
+    assert bool(eqx.tree_equal(same, y))
+    assert bool(eqx.tree_equal((after.blocks, after.predicted, after.fell), (at.blocks, at.predicted, at.fell)))
+    assert float(after.damping) > float(at.damping)
+    assert float(after.steps) == float(at.steps) + TURNED_DOWN
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [3, 21])
+def test_where_a_jagged_cost_ends_the_search_nothing_is_left_to_gain(seed):
+    """Dry friction makes the cost of a tied trajectory jagged: half the steps were spent where thousandths were gained."""
+    bench, effects = joint("coulomb_joint", seed, 12.0)
+    loose = bench.fit(effects, patience=60)
+    problem, _ = bench.problem(effects, loose.system)
+    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1]))
+    begin = Unknowns(np.zeros(problem.directions.shape[1]), loose.unknowns.starts, loose.unknowns.coefficients)
+    ended = minimise(problem, begin, Levenberg(damping=1e-9, limit=150))
+    further = minimise(problem, ended.value, Levenberg(atol=1e-9, limit=60))
+    assert int(ended.stats["steps"]) < 150
+    # One standard error of one parameter costs a half.
+    assert float(ended.stats["cost"] - further.stats["cost"]) < 0.05
+    moved = problem.directions @ (np.asarray(further.value.theta) - np.asarray(ended.value.theta))
+    free = int(problem.active)
+    scale = np.sum(problem.directions, axis=0)[:free]
+    errors = scale * np.sqrt(np.diag(np.linalg.inv(np.asarray(ended.stats["schur"])[:free, :free])))
+    at = [int(np.flatnonzero(problem.directions[:, j])[0]) for j in range(free)]
+    assert np.all(np.abs(moved[at]) < 0.3 * errors)
