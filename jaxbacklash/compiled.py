@@ -117,11 +117,10 @@ class _Program:
         self.plain = exported.nr_devices > 1 or exported.platforms == ("cpu",)
 
     def link(self) -> None:
-        """Compile it, or read what was compiled before, so that the first call need not."""
+        """Compile it, so that the first call need not."""
         with self.lock:
             if not self.linked:
-                shapes = [jax.ShapeDtypeStruct(v.shape, v.dtype) for v in self.exported.in_avals]
-                self.call.lower(shapes).compile()
+                link(self.exported, self.call)
             self.linked = True
 
     def __call__(self, arrays: list[Any]) -> Any:
@@ -130,6 +129,11 @@ class _Program:
         # would be compiled once more. On a CPU numpy's view of it costs nothing.
         results = iter(self.call([np.asarray(a) for a in arrays] if self.plain else arrays))
         return jax.tree.map(lambda leaf: next(results) if leaf is _Here else leaf, self.frame)
+
+
+def link(exported: jax.export.Exported, call: Any) -> None:
+    """Compile what calls a program, or read what was compiled before."""
+    call.lower([jax.ShapeDtypeStruct(v.shape, v.dtype) for v in exported.in_avals]).compile()
 
 
 def caller(exported: jax.export.Exported) -> Any:

@@ -57,7 +57,7 @@ def _read(folder: Path, names: list[str], ended: threading.Event) -> None:
                 text, _ = pickle.loads((folder / name).read_bytes())
                 exported = jax.export.deserialize(text)
                 call = compiled.caller(exported)
-                call.lower([jax.ShapeDtypeStruct(v.shape, v.dtype) for v in exported.in_avals]).compile()
+                compiled.link(exported, call)
                 found = exported, call
         compiled.ahead[name].set_result(found)
 

@@ -13,6 +13,8 @@ from ..compiled import kept_jit
 from .shooting import Problem, Unknowns
 
 Array = Any
+MOST = 1000
+"""Steps of any search at most, turned down or kept: more than its limit leads to, so that it is the limit that tells."""
 
 
 class Levenberg(eqx.Module):
@@ -38,13 +40,13 @@ class Minimum(eqx.Module):
     stats: dict[str, Any]
 
 
-def minimise(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int = 200) -> Minimum:
+def minimise(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int = MOST) -> Minimum:
     """Run the search from ``start``."""
     # As NumPy arrays: what comes back from several devices would tie all later computations to them.
     return Minimum(*jax.tree.map(np.asarray, _minimise(problem, start, how, max_steps)))
 
 
-def ready(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int = 200) -> None:
+def ready(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int = MOST) -> None:
     """Compile what `minimise` will run."""
     _minimise.ready(problem, start, how, max_steps)  # type: ignore[attr-defined]
 
