@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from jaxbacklash.criticism.workbench import Workbench
-from jaxbacklash.fitting.arrow_levenberg import TURNED_DOWN, ArrowLevenbergMarquardt
+from jaxbacklash.fitting.arrow_levenberg import ArrowLevenbergMarquardt
 from jaxbacklash.fitting.levenberg import Levenberg, minimise
 from jaxbacklash.fitting.search import TIES
 from jaxbacklash.fitting.setup import base_system, first_guess
@@ -50,7 +50,7 @@ def test_a_step_that_is_turned_down_changes_nothing_but_the_damping():
     assert bool(eqx.tree_equal(same, y))
     assert bool(eqx.tree_equal((after.blocks, after.predicted, after.fell), (at.blocks, at.predicted, at.fell)))
     assert float(after.damping) > float(at.damping)
-    assert float(after.steps) == float(at.steps) + TURNED_DOWN
+    assert int(after.steps) == int(at.steps) + 1
 
 
 @pytest.mark.slow

@@ -18,14 +18,11 @@ _shoot, _linearise = eqx.filter_jit(shoot), eqx.filter_jit(linearise)  # traced 
 
 PROMISED = 10.0
 """How many times what may be left to gain a step may promise where the last one kept less than that."""
-TURNED_DOWN = 0.25
-"""What a step that is turned down counts: it is simulated and not differentiated."""
 
 
 class ArrowState(eqx.Module):
     """Where the search stands: ``blocks`` and ``predicted`` at the best point, the ``trial`` that is looked at next, ``damping``,
-    ``gain`` the decrease of the cost that the step to it promises, ``fell`` the last decrease, ``steps`` so far, what was
-    turned down as `TURNED_DOWN` of one."""
+    ``gain`` the decrease of the cost that the step to it promises, ``fell`` the last decrease, ``steps`` tried so far."""
 
     blocks: Blocks
     predicted: Prediction
@@ -55,7 +52,7 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         blocks, predicted = jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), shapes)
         far = jnp.asarray(jnp.inf)
         blocks = eqx.tree_at(lambda b: b.cost, blocks, far)
-        return ArrowState(blocks, predicted, y, jnp.asarray(self.damping), far, far, jnp.asarray(0.0))
+        return ArrowState(blocks, predicted, y, jnp.asarray(self.damping), far, far, jnp.asarray(0))
 
     def step(
         self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any
@@ -77,8 +74,7 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         trial = Unknowns(theta, y.starts + solution.local[:, :n].T, y.coefficients + solution.local[:, n:])
         promise = -0.5 * (jnp.sum(blocks.slope * solution.local) + jnp.sum(blocks.slope_theta * solution.theta))
         predicted = jax.tree.map(pick, shot.predicted, state.predicted)
-        steps = state.steps + jnp.where(better, 1.0, TURNED_DOWN)
-        return y, ArrowState(blocks, predicted, trial, damping, promise, fell, steps), None
+        return y, ArrowState(blocks, predicted, trial, damping, promise, fell, state.steps + 1), None
 
     def terminate(self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any) -> Any:
         # Where the model misfits, the noise is no measure of what matters: the misfit is.

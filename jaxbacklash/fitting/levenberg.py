@@ -22,8 +22,7 @@ class Levenberg(eqx.Module):
 
     It ends when a full step promises to lower half the sum of squares by less than ``atol`` (in units of the noise, so 1e-3 means
     that no parameter would move by 5 % of its standard error), or by less than ``rtol`` of what it exceeds the noise by, or
-    after ``limit`` linearisations, steps that are turned down counting less; a limit of 1 only looks at the start. ``damping`` is
-    the first.
+    after ``limit`` steps, kept or turned down; a limit of 1 only looks at the start. ``damping`` is the first.
     """
 
     rtol: Array = eqx.field(default=0.0, converter=np.asarray)
