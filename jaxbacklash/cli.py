@@ -7,14 +7,15 @@
 from __future__ import annotations
 
 import atexit
+import functools
 import gc
 import sys
 import warnings
-from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand
 
 from .errors import BadInput, NoAnswer
 
@@ -26,6 +27,32 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
+
+
+class Computation(TyperCommand):
+    """A command that computes: its words are understood, and its files are there, before any library loads."""
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run it as the program computes, its last run's programs on their way."""
+        from .program import cache_folder, start
+
+        start(brief=self.name != "map")  # a map computes for long
+        from .read_ahead import reading_ahead
+
+        with reading_ahead(self.name or "", cache_folder()):
+            return super().invoke(ctx)
+
+
+computes = functools.partial(app.command, cls=Computation)
+
+
+def there(found: Any) -> Any:
+    """The path or paths given, if there is something: a wrong name need not wait for libraries to load."""
+    for path in found if isinstance(found, list) else [found]:
+        if path is not None and not path.exists():
+            raise BadInput(f"{path}: found no such file, wanted a record.")
+    return found
+
 
 Columns = Annotated[list[str] | None, typer.Option("--columns", help="Other column names: t=time_s,x=enc1,z=enc2")]
 Unit = Annotated[list[str] | None, typer.Option("--unit", help="Convert a channel to SI: x=deg or x=deg,t=ms")]
@@ -42,14 +69,18 @@ Seed = Annotated[int, typer.Option("--seed", help="Seed of everything random")]
 Window = Annotated[float, typer.Option("--window", help="Length of the windows whose prediction error is quoted [s]")]
 Translation = Annotated[bool, typer.Option("--translation", help="The record is of a translating mass: m, kg, N")]
 Laws = Annotated[Path | None, typer.Option("--laws", help="A Python file with effect classes of your own")]
-Heldout = Annotated[Path | None, typer.Option("--heldout", help="A record to predict with the fitted parameters frozen")]
+Heldout = Annotated[
+    Path | None, typer.Option("--heldout", callback=there, help="A record to predict with the fitted parameters frozen")
+]
 
 
-@app.command(
+@computes(
     epilog="Example: jaxbacklash fit run1.csv --inertia 3.16 --columns x=enc1,z=enc2 --unit x=deg,z=deg --out fit1"
 )
 def fit(
-    records: Annotated[list[Path], typer.Argument(help="One or more records: CSV, npz or mat; see the README for columns")],
+    records: Annotated[
+        list[Path], typer.Argument(callback=there, help="One or more records: CSV, npz or mat; see the README for columns")
+    ],
     inertia: Inertia = None,
     model: Annotated[str, typer.Option("--model", help="joint, linear, free, or a model file FILE.toml to start from")] = "joint",
     effects: Annotated[str | None, typer.Option("--effects", help="Effects to add: gravity,coulomb_joint")] = None,
@@ -81,10 +112,10 @@ def fit(
     )  # fmt: skip
 
 
-@app.command(epilog="Example: jaxbacklash compare fit1/model.toml run2.csv --out compare2")
+@computes(epilog="Example: jaxbacklash compare fit1/model.toml run2.csv --out compare2")
 def compare(
     model: Annotated[Path, typer.Argument(help="A model file (TOML), as written by fit")],
-    record: Annotated[Path, typer.Argument(help="A record")],
+    record: Annotated[Path, typer.Argument(callback=there, help="A record")],
     laws: Laws = None,
     out: Out = None,
     json: Json = False,
@@ -109,9 +140,9 @@ def compare(
     )  # fmt: skip
 
 
-@app.command(epilog="Example: jaxbacklash diagnose run1.csv --inertia 3.16 --out why1")
+@computes(epilog="Example: jaxbacklash diagnose run1.csv --inertia 3.16 --out why1")
 def diagnose(
-    record: Annotated[Path, typer.Argument(help="A record: CSV, npz or mat")],
+    record: Annotated[Path, typer.Argument(callback=there, help="A record: CSV, npz or mat")],
     inertia: Inertia = None,
     model: Annotated[str, typer.Option("--model", help="joint, linear, free, or a model file FILE.toml to start from")] = "joint",
     effects: Annotated[str | None, typer.Option("--effects", help="Effects the model has already: gravity,coulomb_joint")] = None,
@@ -140,9 +171,9 @@ def diagnose(
     )  # fmt: skip
 
 
-@app.command(epilog="Example: jaxbacklash refine run1.csv --heldout run2.csv --inertia 3.16 --out found1")
+@computes(epilog="Example: jaxbacklash refine run1.csv --heldout run2.csv --inertia 3.16 --out found1")
 def refine(
-    record: Annotated[Path, typer.Argument(help="A record: CSV, npz or mat")],
+    record: Annotated[Path, typer.Argument(callback=there, help="A record: CSV, npz or mat")],
     heldout: Heldout = None,
     inertia: Inertia = None,
     model: Annotated[str, typer.Option("--model", help="joint, linear, free, or a model file FILE.toml to start from")] = "joint",
@@ -170,9 +201,11 @@ def refine(
     )  # fmt: skip
 
 
-@app.command(epilog="Example: jaxbacklash skeleton sweep1.csv --inertia 3.16 --out skeleton1")
+@computes(epilog="Example: jaxbacklash skeleton sweep1.csv --inertia 3.16 --out skeleton1")
 def skeleton(
-    record: Annotated[Path, typer.Argument(help="A record of a sweep, a steady or modulated sine, or a free decay")],
+    record: Annotated[
+        Path, typer.Argument(callback=there, help="A record of a sweep, a steady or modulated sine, or a free decay")
+    ],
     inertia: Inertia = None,
     gravity: Annotated[float, typer.Option("--gravity", help="m g L / J of the link [1/s^2], positive upright")] = 0.0,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for result.json and report.html")] = None,
@@ -195,9 +228,11 @@ def skeleton(
     )  # fmt: skip
 
 
-@app.command(epilog="Example: jaxbacklash chaos run1.csv --channel z --out chaos1")
+@computes(epilog="Example: jaxbacklash chaos run1.csv --channel z --out chaos1")
 def chaos(
-    record: Annotated[Path, typer.Argument(help="A table with even times and the channel to judge: CSV, npz or mat")],
+    record: Annotated[
+        Path, typer.Argument(callback=there, help="A table with even times and the channel to judge: CSV, npz or mat")
+    ],
     channel: Annotated[str | None, typer.Option("--channel", help="The channel or column to judge; default z, else y")] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for result.json and report.html")] = None,
     json: Json = False,
@@ -223,7 +258,7 @@ def chaos(
     )  # fmt: skip
 
 
-@app.command(
+@computes(
     epilog="Example: jaxbacklash simulate fit1/model.toml --excitation chirp:amplitude=0.07,f0=0,f1=12 --out sim.csv"
 )
 def simulate(
@@ -259,7 +294,7 @@ def simulate(
     )  # fmt: skip
 
 
-@app.command(
+@computes(
     "map", epilog="Example: jaxbacklash map --inverse-alpha 1:5:256 --zeta 0.005:0.03:64 --out case1.nc"
 )
 def map_(
@@ -286,7 +321,7 @@ def map_(
     )  # fmt: skip
 
 
-@app.command(epilog="Example: jaxbacklash demo --out demo")
+@computes(epilog="Example: jaxbacklash demo --out demo")
 def demo(
     out: Annotated[Path, typer.Option("--out", help="Folder for what the demo makes")] = Path("jaxbacklash-demo"),
     json: Json = False,
@@ -308,8 +343,7 @@ def main() -> None:
     gc.set_threshold(100_000, 50, 100)
     atexit.register(gc.freeze)  # nor once more when all of it goes anyway, which took longer than a fit
     try:
-        with _begun(sys.argv[1:]):
-            app(standalone_mode=False)
+        app(standalone_mode=False)
     except BadInput as error:
         sys.exit(_say(f"error: {error}", 2))
     except NoAnswer as error:
@@ -323,22 +357,11 @@ def main() -> None:
     except Exception as error:
         if not hasattr(error, "format_message"):
             raise
-        # A wrong word on the command line, told by the parser; without any word it has just shown the help.
-        sentence = " ".join(error.format_message().split())
-        sys.exit(_say(f"error: {sentence}", 2) if len(sys.argv) > 1 else 2)
-
-
-def _begun(words: list[str]) -> AbstractContextManager[None]:
-    """The program as it computes, its last run's programs on their way; as it is where only help is asked for, without jax."""
-    if "--help" in words:
-        return nullcontext()
-    from .program import cache_folder, start
-
-    start(brief=words[:1] != ["map"])  # a map computes for long
-    from .read_ahead import reading_ahead
-
-    command = next((word for word in words[:1] if word.isidentifier()), None)
-    return nullcontext() if command is None else reading_ahead(command, cache_folder())
+        if len(sys.argv) < 2:  # without any word the parser answers with the help
+            print(error.format_message(), file=sys.stderr)
+            sys.exit(2)
+        # A wrong word on the command line.
+        sys.exit(_say(f"error: {' '.join(error.format_message().split())}", 2))
 
 
 def _say(sentence: str, code: int) -> int:

@@ -241,3 +241,11 @@ def test_help_has_an_example(call):
         code, out, _ = call(command, "--help")
         assert code == 0
         assert "Example: jaxbacklash" in " ".join(out.split())
+
+
+def test_no_word_at_all_shows_the_help(call):
+    code, out, err = call()
+    assert code == 2
+    assert out == ""
+    assert "refine" in err
+    assert "skeleton" in err

@@ -98,6 +98,21 @@ assert not late, late
     assert fresh(code) == ""
 
 
+@pytest.mark.parametrize("words", [["refine", "nothere.csv"], ["fit", "nothere.csv", "--seed", "3"], ["fit", "--inertai", "3"]])
+def test_a_mistake_that_names_alone_can_tell_waits_for_no_library(words):
+    code = f"""
+import io, sys
+sys.stderr = io.StringIO()
+sys.argv = ["jaxbacklash", *{words!r}]
+from jaxbacklash.cli import main
+try:
+    main()
+except SystemExit as end:
+    print(end.code, "jax" in sys.modules, sys.stderr.getvalue().count(chr(10)))
+"""
+    assert fresh(code).split() == ["2", "False", "1"]
+
+
 def test_version():
     import jaxbacklash
 
