@@ -44,6 +44,9 @@ class Bench:
         self.asked.append((frozenset(effects), tied))
         return self.answers.pop(0)
 
+    def fit_softly(self, trial, *_):
+        return trial
+
 
 @pytest.mark.parametrize("costs", [(130.0, 90.0), (90.0,), (130.0, 140.0)])
 def test_a_larger_model_that_fits_worse_begins_again_near_the_smaller_one(monkeypatch, costs):

@@ -11,7 +11,7 @@ from ..mechanics import AbstractEffect
 from .candidates import Candidate, rank
 from .evidence import AS_WELL, NOISE_FLOOR, UNEXPLAINED, demanded, excess, explained, gain, measures_only, shapeless, significance
 from .memories import families, may_replace, members
-from .tried import WHOLE, Tried
+from .tried import LOOSER, WHOLE, Tried
 from .tuning import apart
 from .under_noise import promised
 from .workbench import Trial, Workbench, adequate, strengths
@@ -201,6 +201,9 @@ class Search(Tried):
             for other in self.instead(steps, name):
                 lead = final.criterion - other.criterion
                 if other.names not in seen and lead > self.lead(other, final, name) and adequate(other):
+                    relieved = self.shaken(final)
+                    if final.cost - relieved.cost > LOOSER:
+                        return self.swap([*steps[:-1], replace(steps[-1], trial=relieved)], seen)
                     other = other if other.done else self.finish(other)
                     added = next(iter(other.names - final.names))
                     path = self.reduced([*steps[:-1], Step(other, added, (), ())])
@@ -223,6 +226,8 @@ class Search(Tried):
             for other in self.bench.laws[name].absorbs:
                 simpler = self.simplified(final, name, other)
                 richer = final if simpler.tied == final.tied else self.loosened(final)
+                if gain(simpler, richer) >= demanded(self.bench):
+                    simpler = self.shaken(simpler)
                 if gain(simpler, richer) < demanded(self.bench) or shapeless(final, name):
                     settled, dropped = self.prune(self.settle(simpler))
                     return self.reduced([*steps, Step(settled, other, (name, *dropped), ())])
@@ -280,6 +285,12 @@ class Search(Tried):
             name = self.best(current, tried, least)
             if evidence[name] < demanded(self.bench) or self.nibbles(current, tried[name], least):
                 break
+            relieved = self.relieved(current, tried[name])
+            if current.cost - relieved.cost > LOOSER:
+                # What was stuck gets its turn again: what came free beside an effect is no evidence for that effect.
+                current = relieved
+                steps[-1] = replace(steps[-1], trial=current)
+                continue
             settled = self.settle(tried[name])
             if self.bench.laws[name].states and not settled.tied and (plain := self.clear(current, tried, least)):
                 # It soaked up what free windows leave, and no trajectory follows it: what acts without a state goes first.
@@ -331,7 +342,7 @@ class Search(Tried):
         near = (1.0 - CLOSE) * (current.criterion - lowest)
         close = [n for n, t in tried.items() if t.criterion - lowest <= near]
         undecided = len(close) > 1
-        return {n: self.finish(t) if undecided and n in close and not t.done else t for n, t in tried.items()}
+        return {n: self.shaken(t if t.done else self.finish(t)) if undecided and n in close else t for n, t in tried.items()}
 
     def rubs(self, trial: Trial) -> bool:
         """Whether a model has friction in the joint: what a record asks for beside it may be that friction's memory."""

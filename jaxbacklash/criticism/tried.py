@@ -17,6 +17,8 @@ STUCK = 1.01
 """A tied fit that misses by so much more than its free windows has stuck, or their freedom hides what the model lacks."""
 SLIGHT = 0.03
 """Share of its predicted strength at which an effect begins where from the whole of it the fit has stuck."""
+LOOSER = 1.0
+"""A fit that comes out so much lower when it is given its turn again had stuck."""
 WHOLE = 60
 """Linearisations allowed to a model that is kept."""
 
@@ -33,6 +35,7 @@ class Tried:
         self.bench, self.progress = bench, progress
         self.known: dict[tuple[frozenset[str], bool], Trial] = {}
         self.asked: set[frozenset[str]] = set()  # models that were to be tied with cuts
+        self.shook: set[frozenset[str]] = set()  # models whose dry friction was softened for a while
 
     def settle(self, trial: Trial) -> Trial:
         """The trial finished, and its windows tied where it is good enough for that."""
@@ -100,7 +103,8 @@ class Tried:
             return trial
         free = self._keep(self.bench.fit(effects, before, tied=False))
         again = self.bench.fit(self.bench.effects(free), free, tied=True, patience=patience)
-        return min(trial, again, key=lambda t: t.cost)
+        best = min(trial, again, key=lambda t: t.cost)
+        return best if follows(best, free) else self.softly(best)
 
     def loosened(self, trial: Trial) -> Trial:
         """The same model with its windows free."""
@@ -117,6 +121,38 @@ class Tried:
             effects = {n: e for n, e in self.bench.effects(before).items() if n != name}
             self._keep(self.bench.fit(effects, before, tied=key[1]))
         return self.known[key]
+
+    def relieved(self, before: Trial, after: Trial) -> Trial:
+        """A model that dry friction may have stuck, given its turn again before a larger one or a richer law takes its place.
+
+        Dry friction makes the cost of one trajectory jagged: an addition that does nothing else may shake the search loose.
+        """
+        if not (before.tied and after.tied):
+            return before
+        more = after.names - before.names
+        beside = self.without(after, next(iter(more))) if len(more) == 1 and before.names < after.names else before
+        return self.shaken(min(before, beside, key=lambda t: t.cost))
+
+    def shaken(self, trial: Trial) -> Trial:
+        """A tied model fitted `softly`, once in a search, if that finds something better."""
+        if not trial.tied or trial.names in self.shook:
+            return trial
+        self.shook.add(trial.names)
+        found = self.softly(trial)
+        return trial if found is trial else self._keep(found)
+
+    def softly(self, tied: Trial) -> Trial:
+        """A tied model with dry friction fitted by way of friction without corners, if that is better."""
+        dry = any(self.bench.laws[name].slides for name in tied.names)
+        if not dry or self.bench.grips(tied.names):
+            return tied
+        self.progress(f"softening dry friction: {', '.join(sorted(tied.names))}", 0.5)
+        for way in (0, 1, 0, 1):
+            found = self.bench.fit_softly(tied, WHOLE, way)
+            if way and tied.cost - found.cost < LOOSER:
+                break
+            tied = min(tied, found, key=lambda t: t.cost)
+        return tied
 
     def simplified(self, final: Trial, name: str, other: str) -> Trial:
         """The model with a law reduced to a simpler one that it contains."""

@@ -19,6 +19,7 @@ from ..fitting.levenberg import Levenberg, Minimum, minimise, ready
 from ..fitting.search import ADEQUATE, LOOSE, TIES, freedom, tie_windows
 from ..fitting.setup import first_guess, free_names, held_system, make_problem
 from ..fitting.shooting import Problem, Unknowns
+from ..fitting.softened import loosened
 from ..fitting.windows import Layout, Windows
 from ..mechanics import AbstractEffect, canonical_name, catalogue
 from ..parameters import specs, values, with_values
@@ -168,6 +169,17 @@ class Workbench:
         else:
             solution = minimise(problem, unknowns, Levenberg(limit=patience, atol=0.1, rtol=ENOUGH))
         return self._trial(problem, solution, frozenset(effects), free, tied, patience)
+
+    def fit_softly(self, trial: Trial, patience: int, way: int) -> Trial:
+        """A tied model with dry friction fitted once more, by way of friction without corners."""
+        effects, m = self.effects(trial), self.quick.motion
+        speeds = {"joint": m.dy - m.dx, "ground": m.dy}
+        sliding = {n: float(np.sqrt(np.mean(speeds[e.port] ** 2))) for n, e in effects.items() if e.slides}
+        problem, free = self.problem(effects, trial.system)
+        still = Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
+        self.fits += 1
+        problem, solution, _ = tie_windows(problem, loosened(problem, still, sliding, way), TIES[0], limit=patience)
+        return self._trial(problem, solution, trial.names, free, True, patience)
 
     def _followed(self, effects: dict[str, AbstractEffect], joint: System, starts: np.ndarray) -> np.ndarray:
         m, t0 = self.quick.motion, np.asarray(self.windows.t0)

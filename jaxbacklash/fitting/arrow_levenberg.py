@@ -18,11 +18,18 @@ _shoot, _linearise = eqx.filter_jit(shoot), eqx.filter_jit(linearise)  # traced 
 
 PROMISED = 10.0
 """How many times what may be left to gain a step may promise where the last one kept less than that."""
+POOR, FAIR = 0.1, 0.5
+"""Share of what it promised that a step must keep for the damping to stay, and to come down."""
+LEAST = 1e-4
+"""Damping after a step is turned down, at least: less than that hardly changes a step."""
+STALLED, WORTH = 12, 20.0
+"""A search ends that over so many steps has gained less than so many times what may be left to gain."""
 
 
 class ArrowState(eqx.Module):
     """Where the search stands: ``blocks`` and ``predicted`` at the best point, the ``trial`` that is looked at next, ``damping``,
-    ``gain`` the decrease of the cost that the step to it promises, ``fell`` the last decrease, ``steps`` tried so far."""
+    ``gain`` the decrease of the cost that the step to it promises, ``fell`` the last decrease, ``steps`` tried so far, ``mark``
+    the cost and the steps when it had last gained something worth while."""
 
     blocks: Blocks
     predicted: Prediction
@@ -31,6 +38,7 @@ class ArrowState(eqx.Module):
     gain: Array
     fell: Array
     steps: Array
+    mark: tuple[Array, Array]
 
 
 class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
@@ -52,7 +60,8 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         blocks, predicted = jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), shapes)
         far = jnp.asarray(jnp.inf)
         blocks = eqx.tree_at(lambda b: b.cost, blocks, far)
-        return ArrowState(blocks, predicted, y, jnp.asarray(self.damping), far, far, jnp.asarray(0))
+        none = jnp.asarray(0)
+        return ArrowState(blocks, predicted, y, jnp.asarray(self.damping), far, far, none, (far, none))
 
     def step(
         self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any
@@ -64,7 +73,10 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         fell = pick(state.blocks.cost - shot.cost, state.fell)
         blocks = jax.lax.cond(better, lambda: _linearise(args, state.trial, shot), lambda: state.blocks)
         y = jax.tree.map(pick, state.trial, y)
-        damping = jnp.where(better, jnp.maximum(0.1 * state.damping, 1e-12), jnp.clip(10.0 * state.damping, 1e-7, 1e12))
+        # Where dry friction makes the cost jagged, steps that only just help lead into corners.
+        kept = (state.blocks.cost - shot.cost) / state.gain
+        less, more = jnp.maximum(0.1 * state.damping, 1e-12), jnp.clip(10.0 * state.damping, LEAST, 1e12)
+        damping = jnp.where(better & (kept > FAIR), less, jnp.where(better & (kept > POOR), state.damping, more))
         damping = jnp.where(state.steps == 0, self.damping, damping)
 
         solution = solve(blocks, damping, args.windows.used)
@@ -74,18 +86,24 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         trial = Unknowns(theta, y.starts + solution.local[:, :n].T, y.coefficients + solution.local[:, n:])
         promise = -0.5 * (jnp.sum(blocks.slope * solution.local) + jnp.sum(blocks.slope_theta * solution.theta))
         predicted = jax.tree.map(pick, shot.predicted, state.predicted)
-        return y, ArrowState(blocks, predicted, trial, damping, promise, fell, state.steps + 1), None
+        steps = state.steps + 1
+        gained = state.mark[0] - blocks.cost > WORTH * self._least(args, blocks.cost)
+        mark = jax.tree.map(lambda new, old: jnp.where(gained, new, old), (blocks.cost, steps), state.mark)
+        return y, ArrowState(blocks, predicted, trial, damping, promise, fell, steps, mark), None
+
+    def _least(self, args: Problem, cost: Array) -> Array:
+        # Where the model misfits, the noise is no measure of what matters: the misfit is.
+        return self.atol * jnp.maximum(1.0, 2.0 * cost / (_rows(args) + 1.0))
 
     def terminate(self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any) -> Any:
-        # Where the model misfits, the noise is no measure of what matters: the misfit is.
-        rows = jnp.sum(args.windows.weight > 0.0)
         cost = state.blocks.cost
-        least = self.atol * jnp.maximum(1.0, 2.0 * cost / (rows + 1.0))
-        small = state.gain < least + self.rtol * jnp.maximum(cost - rows, 0.0)
+        least = self._least(args, cost)
+        small = state.gain < least + self.rtol * jnp.maximum(cost - _rows(args), 0.0)
         # Where dry friction makes the cost jagged, a little is promised for ever and next to nothing kept.
         small = small | ((state.fell < least) & (state.gain < PROMISED * least))
         # A promise under heavy damping says little; wait until the damping has come down or nothing helps any more.
-        done = (small & (state.damping < 1.0)) | (state.damping > 1e11) | (state.steps >= self.limit)
+        stalled = (state.steps - state.mark[1] >= STALLED) | (state.damping > 1e11)
+        done = (small & (state.damping < 1.0)) | stalled | (state.steps >= self.limit)
         return done & (state.steps > 0), optx.RESULTS.successful
 
     def postprocess(
@@ -94,6 +112,10 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         undamped = solve(state.blocks, jnp.asarray(0.0), args.windows.used)
         stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps}
         return y, aux, stats | {"schur": undamped.schur, "pull": undamped.pull}
+
+
+def _rows(problem: Problem) -> Array:
+    return jnp.sum(problem.windows.weight > 0.0)
 
 
 def _keep_sign(problem: Problem, old: Array, new: Array) -> Array:

@@ -21,8 +21,9 @@ class Levenberg(eqx.Module):
     """How a search goes, as data.
 
     It ends when a full step promises to lower half the sum of squares by less than ``atol`` (in units of the noise, so 1e-3 means
-    that no parameter would move by 5 % of its standard error), or by less than ``rtol`` of what it exceeds the noise by, or
-    after ``limit`` steps, kept or turned down; a limit of 1 only looks at the start. ``damping`` is the first.
+    that no parameter would move by 5 % of its standard error), or by less than ``rtol`` of what it exceeds the noise by, when a
+    dozen steps together gained hardly more than that, or after ``limit`` steps, kept or turned down; a limit of 1 only looks at
+    the start. ``damping`` is the first.
     """
 
     rtol: Array = eqx.field(default=0.0, converter=np.asarray)
