@@ -127,11 +127,15 @@ class Tried:
 
         Dry friction makes the cost of one trajectory jagged: an addition that does nothing else may shake the search loose.
         """
-        if not (before.tied and after.tied):
+        if not (before.tied and after.tied and self.dry(before)):
             return before
         more = after.names - before.names
         beside = self.without(after, next(iter(more))) if len(more) == 1 and before.names < after.names else before
         return self.shaken(min(before, beside, key=lambda t: t.cost))
+
+    def dry(self, trial: Trial) -> bool:
+        """Whether a model has dry friction, whose corners a search may stick at."""
+        return any(self.bench.laws[name].slides for name in trial.names)
 
     def shaken(self, trial: Trial) -> Trial:
         """A tied model fitted `softly`, once in a search, if that finds something better."""
@@ -143,8 +147,7 @@ class Tried:
 
     def softly(self, tied: Trial) -> Trial:
         """A tied model with dry friction fitted by way of friction without corners, if that is better."""
-        dry = any(self.bench.laws[name].slides for name in tied.names)
-        if not dry or self.bench.grips(tied.names):
+        if not self.dry(tied) or self.bench.grips(tied.names):
             return tied
         self.progress(f"softening dry friction: {', '.join(sorted(tied.names))}", 0.5)
         for way in (0, 1, 0, 1):
