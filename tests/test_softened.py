@@ -40,6 +40,8 @@ def test_the_narrower_the_range_the_nearer_to_dry_friction():
     assert isinstance(soft.windows, Windows)
     assert bool(eqx.tree_equal(soft.windows, problem.windows))
     assert problem.system.slides == ("joint",)
+    # A law that states no range is left as it is.
+    assert np.array_equal(softened(problem, {"gravity": 0.1}).base, problem.base)
 
 
 @pytest.mark.slow

@@ -58,7 +58,7 @@ class Tried:
         From there the whole trajectory may be in reach. If it is not, every model of the record is tied with these cuts from
         then on, so that they remain comparable.
         """
-        asked = free.names in self.asked or not any(self.bench.laws[name].slides for name in free.names)
+        asked = free.names in self.asked or not self.dry(free)
         ties = None if asked or self.bench.is_cut else cut_free(self.bench, free)
         self.asked.add(free.names)
         if ties is None:

@@ -19,7 +19,7 @@ from ..fitting.levenberg import Levenberg, Minimum, minimise, ready
 from ..fitting.search import ADEQUATE, LOOSE, TIES, freedom, tie_windows
 from ..fitting.setup import first_guess, free_names, held_system, make_problem
 from ..fitting.shooting import Problem, Unknowns
-from ..fitting.softened import loosened
+from ..fitting.softened import through_softened
 from ..fitting.windows import Layout, Windows
 from ..mechanics import AbstractEffect, canonical_name, catalogue
 from ..parameters import specs, values, with_values
@@ -178,7 +178,7 @@ class Workbench:
         problem, free = self.problem(effects, trial.system)
         still = Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
         self.fits += 1
-        problem, solution, _ = tie_windows(problem, loosened(problem, still, sliding, way), TIES[0], limit=patience)
+        problem, solution, _ = tie_windows(problem, through_softened(problem, still, sliding, way), TIES[0], limit=patience)
         return self._trial(problem, solution, trial.names, free, True, patience)
 
     def _followed(self, effects: dict[str, AbstractEffect], joint: System, starts: np.ndarray) -> np.ndarray:

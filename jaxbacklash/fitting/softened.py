@@ -8,7 +8,6 @@ speed holds nothing quite and has no corners; narrowed step by step, it leads to
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import equinox as eqx
 import numpy as np
@@ -17,7 +16,6 @@ from ..parameters import values
 from .search import TIES, tie_windows
 from .shooting import Problem, Unknowns
 
-Array = Any
 NARROWER = ((0.03, 0.01, 0.003, 0.001, 0.0003), (0.3, 0.1, 0.03, 0.01, 0.003))
 """The range in which the sign turns, one after the other, in parts of the speed at which friction slides: two ways, the first
 near what it is to lead to, the other from farther off."""
@@ -26,17 +24,21 @@ STEPS = 20
 
 
 def softened(problem: Problem, widths: dict[str, float]) -> Problem:
-    """The same problem, its dry friction with the sign turning over ``widths`` [rad/s], by name of the law."""
+    """The same problem, its dry friction with the sign turning over ``widths`` [rad/s], by name of the law.
+
+    A user's own law that states no ``width`` softens its sign in its own way.
+    """
     names = list(values(problem.system))
     base = np.array(problem.base, dtype=float)
     for law, width in widths.items():
-        base[names.index(f"{law}.width")] = width
+        if f"{law}.width" in names:
+            base[names.index(f"{law}.width")] = width
     # Spread at both ports: so is friction that is only judged, and no other program is compiled.
     spread = eqx.tree_at(lambda p: p.base, problem, base)
     return replace(spread, system=replace(problem.system, smoothed=("joint", "ground")))
 
 
-def loosened(problem: Problem, unknowns: Unknowns, speeds: dict[str, float], way: int = 0) -> Unknowns:
+def through_softened(problem: Problem, unknowns: Unknowns, speeds: dict[str, float], way: int) -> Unknowns:
     """Where a tied search through softened friction leads, from where it has stuck.
 
     Parameters
