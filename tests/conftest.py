@@ -1,6 +1,7 @@
 """Every test runs in double precision; tests on shared records skip where those are absent."""
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import jax
@@ -28,3 +29,12 @@ def pytest_collection_modifyitems(items):
 def shared() -> Path:
     """The folder of practice records and measured data."""
     return SHARED
+
+
+@pytest.fixture
+def cache(tmp_path: Path) -> Iterator[Path]:
+    """An empty cache of compiled programs; the one that the tests share comes back afterwards."""
+    before = jax.config.jax_compilation_cache_dir
+    jax.config.update("jax_compilation_cache_dir", str(tmp_path))
+    yield tmp_path / "programs"
+    jax.config.update("jax_compilation_cache_dir", before)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import equinox as eqx
 import jax
@@ -17,15 +16,6 @@ from jaxbacklash.compiled import kept_jit
 from jaxbacklash.effects import Gravity
 from jaxbacklash.mechanics import AbstractEffect
 from jaxbacklash.read_ahead import reading_ahead
-
-
-@pytest.fixture
-def cache(tmp_path: Path):
-    """An empty cache; the one that the tests share comes back afterwards."""
-    before = jax.config.jax_compilation_cache_dir
-    jax.config.update("jax_compilation_cache_dir", str(tmp_path))
-    yield tmp_path / "programs"
-    jax.config.update("jax_compilation_cache_dir", before)
 
 
 def process(traced: list[str]):

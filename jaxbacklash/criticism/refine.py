@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from itertools import pairwise
 
@@ -24,6 +23,7 @@ from ..records import Record, oriented
 from ..system import System
 from .candidates import Candidate
 from .experiment import Experiment, separate
+from .foresight import Foresight
 from .search import Search
 from .verdict import Verdict, judge_rest
 from .workbench import Trial, Workbench, adequate, pruned
@@ -122,10 +122,9 @@ def refine(
     else:
         names, model = free_names(system), "given"
     bench = Workbench(record, system, names, window, beside=heldout)
-    search = Search(bench, progress)
     clock["prepare"] = time.perf_counter()
-    with ThreadPoolExecutor(1) as aside:
-        aside.submit(bench.ready)
+    with Foresight(bench) as ahead:
+        search = Search(bench, progress, ahead.after)
         steps = search.run()
     clock["search"] = time.perf_counter()
 

@@ -50,8 +50,14 @@ class Step:
 class Search(Tried):
     """Adds effects to the joint one by one, and looks again at what it has added."""
 
-    def __init__(self, bench: Workbench, progress: Callable[[str, float], None] = silent) -> None:
+    def __init__(
+        self,
+        bench: Workbench,
+        progress: Callable[[str, float], None] = silent,
+        based: Callable[[Trial], object] = lambda base: None,
+    ) -> None:
         super().__init__(bench, progress)
+        self.based = based  # told the fit of the joint alone
         self.level: dict[tuple[str, ...], Trial] = {}
 
     def base(self) -> Trial:
@@ -66,6 +72,7 @@ class Search(Tried):
     def run(self) -> list[Step]:
         """The whole search: the path from the joint alone to the model kept."""
         base = self.base()
+        self.based(base)
         steps = self.forward(base, [Step(base, None, (), ())], MUCH)
         final = steps[-1].trial
         if final.tied and final.misfit < 0.97:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ..fitting.fit import prepare
 from ..fitting.held import held, search_held
-from ..fitting.levenberg import Levenberg, Minimum, minimise, ready
+from ..fitting.levenberg import Levenberg, Minimum, minimise
 from ..fitting.search import ADEQUATE, LOOSE, TIES, freedom, tie_windows
 from ..fitting.setup import first_guess, free_names, held_system, make_problem
 from ..fitting.shooting import Problem, Unknowns
@@ -195,12 +195,6 @@ class Workbench:
             if float(solution.stats["cost"]) < float(seen["cost"]):
                 unknowns, seen, steps = solution.value, solution.stats, taken
         return self._trial(problem, Minimum(unknowns, {**seen, "steps": steps}), names, free, True, patience)
-
-    def ready(self) -> None:
-        """Compile the catalogue's program, which every search needs after that of the joint alone."""
-        law = next(iter(self.static))
-        problem, _ = self.problem({}, self.base, extra=[f"{law}.{name}" for name in strengths(self.static[law]())])
-        ready(problem, first_guess(problem), Levenberg())
 
     def look(self, problem: Problem, unknowns: Unknowns) -> tuple[np.ndarray, np.ndarray, float, np.ndarray]:
         """Information about all columns (q, q), their score (q,), the cost, and the columns' scales (q,), at a point."""

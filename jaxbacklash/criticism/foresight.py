@@ -1,0 +1,88 @@
+"""What a search will most likely ask the compiler for next, compiled beside it. It changes nothing but the time a cold run takes.
+
+A search waits for one program after the other while the compiler keeps a single core busy. The joint alone is fitted while the
+catalogue's program is in the making; what the joint leaves tells then whether dry friction will want a program of its own.
+"""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from types import TracebackType
+
+from ..fitting.levenberg import Levenberg, ready
+from ..fitting.setup import first_guess
+from ..fitting.shooting import Problem
+from ..parameters import values, with_values
+from ..system import System
+from .along_motion import own_torques
+from .memories import families
+from .tuning import apart, tune
+from .workbench import Trial, Workbench, strengths
+
+CLEARLY = 0.1
+"""Share of what the joint alone leaves that dry friction takes away in the quick look where its program is made beforehand."""
+
+
+class Foresight:
+    """Compiles ahead of a search as a context; `after` is to be told the fit of the joint alone.
+
+    What fails here fails again, and is told, where it is asked for.
+    """
+
+    def __init__(self, bench: Workbench) -> None:
+        self.bench = bench
+        self.aside = ThreadPoolExecutor(2)
+
+    def __enter__(self) -> Foresight:
+        self.aside.submit(self.catalogue)
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.aside.shutdown(wait=True, cancel_futures=True)
+
+    def after(self, base: Trial) -> None:
+        """Go on from what the joint alone leaves."""
+        law = self.friction(base)
+        if law is not None:
+            self.aside.submit(self.sliding, base, law)
+        self.aside.submit(self.looks, base, law)
+
+    def catalogue(self) -> None:
+        """The catalogue's program, which every search needs after that of the joint alone."""
+        name = next(iter(self.bench.static))
+        problem, _ = self.bench.problem({}, self.bench.base, extra=[f"{name}.{n}" for n in strengths(self.bench.static[name]())])
+        ready(problem, first_guess(problem), Levenberg())
+
+    def friction(self, base: Trial) -> str | None:
+        """The simplest dry friction in the port where a quick look at what the joint leaves makes it likely."""
+        dry = {name: law for name, law in self.bench.static.items() if law.slides}
+        simplest: dict[str, str] = {}
+        for name in sorted(dry, key=lambda n: len(strengths(dry[n]()))):
+            simplest.setdefault(dry[name].port, name)
+        shares = {}
+        for name in simplest.values():
+            rubbing, _ = apart(dry[name](), strengths(dry[name]()))
+            shares[name] = self.bench.quick.share(base.system, base.free, rubbing)
+        likeliest = max(shares, key=lambda n: shares[n], default="")
+        return likeliest if shares.get(likeliest, 0.0) > CLEARLY else None
+
+    def sliding(self, base: Trial, name: str) -> None:
+        """The catalogue's program with dry friction that can hold."""
+        problem, _ = self._one_more(base, name)
+        ready(problem, first_guess(problem), Levenberg())
+
+    def looks(self, base: Trial, friction: str | None) -> None:
+        """The small programs of the quick look at a model with one effect, and at laws that have a memory."""
+        quick, laws = self.bench.quick, self.bench.laws
+        problem, free = self._one_more(base, friction or next(iter(self.bench.static)))
+        quick.missing(with_values(problem.system, values(problem.system)), free)
+        if friction is not None:
+            bare = System(base.system.inertia, base.system.contact, base.system.damper, {}, base.system.observed)
+            for names in families(self.bench).values():
+                tune(quick, bare, base.free, laws[names[0]].guesses(bare))
+        for law in laws.values():
+            if law.states and not law.family:
+                own_torques(law.guesses(base.system), base.system, quick.motion)
+
+    def _one_more(self, base: Trial, name: str) -> tuple[Problem, tuple[str, ...]]:
+        return self.bench.problem({name: self.bench.laws[name].guesses(base.system)[0]}, base.system)

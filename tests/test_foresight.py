@@ -1,0 +1,40 @@
+"""What is compiled beside a search: that it is what the search asks for, and that it is the right friction."""
+
+import threading
+from types import SimpleNamespace
+
+import pytest
+
+from jaxbacklash import compiled, refine
+from jaxbacklash.criticism.foresight import Foresight
+from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.fitting import levenberg
+from jaxbacklash.fitting.setup import base_system
+
+from .hidden import hidden
+
+
+@pytest.mark.parametrize(("effect", "expected"), [("coulomb_joint",) * 2, ("coulomb_ground",) * 2, ("gravity", None)])
+def test_friction_is_foreseen_where_it_is(effect, expected):
+    record, rig, _, _ = hidden(effect, "chirp", 3, 8.0)
+    base, free, _ = base_system(record, "joint", rig.inertia)
+    bench = Workbench(record, base, free, 0.2)
+    assert Foresight(bench).friction(SimpleNamespace(system=base, free=free)) == expected
+
+
+@pytest.mark.slow
+def test_a_search_with_dry_friction_finds_its_programs_in_the_making(cache, monkeypatch):
+    """The catalogue's program and that of friction are begun beside the search; the joint's own is needed at once."""
+    levenberg._minimise.programs.clear()
+    begun, find = [], compiled._find
+
+    def noted(function, *rest):
+        if function.__name__ == "_minimise":
+            begun.append(threading.current_thread() is threading.main_thread())
+        return find(function, *rest)
+
+    monkeypatch.setattr(compiled, "_find", noted)
+    record, rig, _, _ = hidden("coulomb_joint", "chirp", 3, 8.0)
+    found = refine(record, inertia=rig.inertia)
+    assert found.effects == ("coulomb_joint",)
+    assert begun.count(False) == 2
