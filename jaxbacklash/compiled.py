@@ -41,8 +41,9 @@ UNKEPT = (pickle.PicklingError, AttributeError, TypeError, ValueError, NotImplem
 
 ahead: dict[str, Future[Loaded | None]] = {}
 """Programs by file name that are being read before they are asked for (`jaxbacklash.read_ahead`); None if they cannot be."""
-used: list[str] = []
-"""File names of the programs that this process has asked for, in order."""
+used: dict[str, None] = {}
+used_aside: dict[str, None] = {}
+"""File names of the programs that this process's main thread has called, in order, and those called by other threads."""
 
 
 class _Foreign(Exception):
@@ -111,8 +112,8 @@ def _is_array(leaf: Any) -> bool:
 class _Program:
     """A program from arrays to arrays, and the tree that its results make up."""
 
-    def __init__(self, exported: jax.export.Exported, frame: Any, call: Any = None):
-        self.exported, self.frame, self.call = exported, frame, call or caller(exported)
+    def __init__(self, exported: jax.export.Exported, frame: Any, call: Any = None, name: str = ""):
+        self.exported, self.frame, self.call, self.name = exported, frame, call or caller(exported), name
         self.linked, self.lock = call is not None, threading.Lock()
         self.plain = exported.nr_devices > 1 or exported.platforms == ("cpu",)
 
@@ -125,6 +126,7 @@ class _Program:
 
     def __call__(self, arrays: list[Any]) -> Any:
         self.link()
+        (used if threading.current_thread() is threading.main_thread() else used_aside)[self.name] = None
         # An array that sits on one device cannot be handed to several; and for one that came out of another program, a program
         # would be compiled once more. On a CPU numpy's view of it costs nothing.
         results = iter(self.call([np.asarray(a) for a in arrays] if self.plain else arrays))
@@ -151,8 +153,8 @@ def _find(function: Callable[..., Any], args: Any, kinds: Any, folder: Path) -> 
         found = _load(path)
         if found is None:
             found = _trace(function, args)
+            found.name = path.name
             _keep(found, path)
-        used.append(path.name)
     except (_Foreign, *UNKEPT):
         return None
     return found
@@ -180,7 +182,7 @@ def _load(path: Path) -> _Program | None:
         text, frame = pickle.loads(path.read_bytes())
         begun = ahead.get(path.name)
         exported, call = (begun and begun.result()) or (jax.export.deserialize(text), None)
-        program = _Program(exported, pickle.loads(frame), call)
+        program = _Program(exported, pickle.loads(frame), call, path.name)
         os.utime(path)
     except Exception:  # missing, half written, or of another making: it is made anew
         return None

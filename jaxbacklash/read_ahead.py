@@ -44,8 +44,9 @@ def reading_ahead(command: str, folder: Path | None) -> Iterator[None]:
         ended.set()  # a thread that is left inside XLA while Python goes takes the process with it
         reader.join()
         compiled.ahead.clear()
-        if compiled.used:
-            _write(notes, compiled.used)
+        # What the main thread waits for comes first.
+        if asked := [*compiled.used, *compiled.used_aside]:
+            _write(notes, asked)
 
 
 def _read(folder: Path, names: list[str], ended: threading.Event) -> None:

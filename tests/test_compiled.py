@@ -175,7 +175,8 @@ def test_linear_algebra_and_several_devices_come_back(cache):
 @pytest.fixture
 def nothing_used(monkeypatch):
     """As at the start of a process."""
-    monkeypatch.setattr(compiled, "used", [])
+    monkeypatch.setattr(compiled, "used", {})
+    monkeypatch.setattr(compiled, "used_aside", {})
 
 
 def test_what_a_command_used_is_read_before_it_is_asked_for_again(cache, nothing_used):
@@ -196,6 +197,20 @@ def test_what_a_command_used_is_read_before_it_is_asked_for_again(cache, nothing
     assert found == pytest.approx(14.0)
     assert traced == ["traced"]
     assert compiled.ahead == {}
+
+
+def test_what_the_main_thread_waits_for_is_read_first(cache, nothing_used):
+    cache.mkdir()
+    calls = {size: process([]) for size in (3, 4, 5)}
+    with reading_ahead("fit", cache.parent):
+        with ThreadPoolExecutor(1) as aside:
+            aside.submit(calls[3], None, np.arange(3.0), None, 2).result()
+            aside.submit(calls[4].ready, None, np.arange(4.0), None, 2).result()
+            aside.submit(calls[5].ready, None, np.arange(5.0), None, 2).result()
+        calls[5](None, np.arange(5.0), None, 2)
+    names = {size: next(made.result() for made in call.programs.values()).name for size, call in calls.items()}
+    # The one that was never called is not worth reading.
+    assert (cache / "fit.used").read_text().split() == [names[5], names[3]]
 
 
 @pytest.mark.parametrize("broken", [b"", b"half a pro", b"\x80\x04garbage"])

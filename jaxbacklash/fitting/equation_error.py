@@ -60,6 +60,9 @@ def estimate(
     strengths = [(effect, name) for effect in effects if (name := _strength(effect)) is not None]
 
     damping_column = weak.damping()
+    reach = float(np.max(np.abs(weak.z)))
+    units = [_unit(effect, name) for effect, name in strengths]
+    steady = [weak.steady(unit, reach) for unit in units]
 
     def solve(half_play: float) -> tuple[float, np.ndarray]:
         columns = [damping_column]
@@ -70,7 +73,7 @@ def estimate(
             right = weak.force
         else:
             right = weak.force - inertia * weak.acceleration
-        columns += [-weak.torque(_unit(effect, name), half_play) for effect, name in strengths]
+        columns += [-weak.torque(u, half_play) if known is None else -known for u, known in zip(units, steady)]
         matrix = np.stack(columns, axis=1)
         scale = np.linalg.norm(matrix, axis=0)
         scale[scale == 0.0] = 1.0
@@ -80,7 +83,6 @@ def estimate(
 
     half = 0.0
     if spring and play:
-        reach = float(np.max(np.abs(weak.z)))
         grid = reach * np.linspace(0.01, 0.97, 72)
         misfits = [solve(h)[0] for h in grid]
         k = int(np.argmin(misfits))
@@ -156,15 +158,23 @@ class _WeakForm:
         return self._bump.against(torque)
 
     def torque(self, effect: AbstractEffect, half_play: float) -> np.ndarray:
-        """Torque of an effect on the measured motion; only laws that need speeds look at smoothed ones."""
+        """Torque of an effect on the measured motion under the bump; its speeds are smoothed."""
+        return self.integrate(self._pointwise(effect, half_play, self.stiffness))
+
+    def steady(self, effect: AbstractEffect, reach: float) -> np.ndarray | None:
+        """The same where neither play nor stiffness shows in it, None where they do; ``reach`` is the largest deflection."""
+        first, other = self._pointwise(effect, 0.1 * reach, 1.0), self._pointwise(effect, 0.6 * reach, 2.0)
+        return self.integrate(first) if np.array_equal(first, other) else None
+
+    def _pointwise(self, effect: AbstractEffect, half_play: float, stiffness: float) -> np.ndarray:
         dy, dx = self._smooth_speeds()
         deflection = _dead_zone(self.z, half_play)
         contact = (np.abs(self.z) > half_play).astype(float)
         one = jnp.ones(())
         now = Instant(
-            self._record.t, self._y, dy, self._x, dx, self.z, dy - dx, deflection, contact, self.stiffness * one, one
+            self._record.t, self._y, dy, self._x, dx, self.z, dy - dx, deflection, contact, stiffness * one, one
         )
-        return self.integrate(np.asarray(effect.torque(now)) * np.ones_like(self.z))
+        return np.asarray(effect.torque(now)) * np.ones_like(self.z)
 
     def _smooth_speeds(self) -> tuple[np.ndarray, np.ndarray]:
         if self._speeds is None:
