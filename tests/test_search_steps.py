@@ -97,6 +97,32 @@ def test_a_tied_fit_that_sticks_is_let_go_first():
     assert search.known[frozenset({"gravity"}), False] is free
 
 
+@pytest.mark.parametrize("slides", [False, True])
+def test_a_tied_fit_that_creeps_goes_by_free_windows(slides):
+    """But for dry friction, whose fits hardly ever end by themselves and which has a way of its own."""
+    before = Model(frozenset(), cost=100.0)
+    creeping = Model(frozenset({"gravity"}), cost=95.0, misfit=0.99, done=False)
+    free = Model(frozenset({"gravity"}), cost=80.0, tied=False)
+    arrived = Model(frozenset({"gravity"}), cost=85.0, misfit=0.95)
+    search = Search(Bench(creeping, free, arrived))
+    search.bench.laws["gravity"].slides = slides
+    assert search.joined({"gravity": "as fitted"}, before) is (creeping if slides else arrived)
+    assert [tied for _, tied in search.bench.asked] == ([True] if slides else [True, False, True])
+
+
+@pytest.mark.parametrize(("size", "again"), [(2.0, True), (10.0, False)])
+def test_more_than_an_effect_can_account_for_is_first_looked_for_without_it(monkeypatch, size, again):
+    """An effect two standard errors from zero takes 2 off the cost; where 40 fall with it, the search had not arrived."""
+    significant(monkeypatch, size)
+    before = Model(frozenset({"preload"}), cost=100.0)
+    after = Model(frozenset({"preload", "gravity"}), cost=60.0, free=("backlash", "gravity.G"))
+    arrived = Model(frozenset({"preload"}), cost=62.0)
+    search = Search(Bench(arrived))
+    search.known[before.names, True] = before
+    assert search.relieved(before, after) is (arrived if again else before)
+    assert len(search.bench.asked) == again
+
+
 def test_a_tied_fit_that_stuck_is_not_believed_over_free_windows():
     free = Model(frozenset({"gravity"}), cost=100.0, tied=False, misfit=1.0)
     stuck = Model(frozenset({"gravity"}), cost=150.0, misfit=1.2, done=False)

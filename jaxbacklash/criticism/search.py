@@ -13,7 +13,7 @@ from .evidence import AS_WELL, NOISE_FLOOR, UNEXPLAINED, demanded, excess, expla
 from .memories import families, may_replace, members
 from .tried import LOOSER, WHOLE, Tried
 from .tuning import apart
-from .under_noise import promised
+from .under_noise import promises
 from .workbench import Trial, Workbench, adequate, strengths
 
 MOST_EFFECTS = 5
@@ -31,6 +31,8 @@ FAR, GLIMPSE = 2.0, 0.03
 """Where a model is this far off, a law with internal states must show this share in the quick look to be tried."""
 GLIMPSED = 2.0
 """How many times what is demanded of an addition the quick look must show before such a law is tried beside what explains."""
+LIKELY, HALF = 2, 0.5
+"""Guesses of such a law that are fitted at most, and share of a gain that is enough to promise where more may come of it."""
 SURE = 4.0
 """A gain predicted to be so many times what is demanded is no accident, so a fit that does not show it has stuck."""
 
@@ -137,25 +139,33 @@ class Search(Tried):
         The joint's own numbers can take in most of what a flexible link does, and leave too little to be seen without simulation.
         """
         final = steps[-1].trial
-        if not final.tied or not adequate(final) or self.bench.outright or len(final.names) >= MOST_EFFECTS:
+        found = self.unseen(final, GLIMPSED * demanded(self.bench))
+        evidence = gain(final, found[1]) if found else 0.0
+        if found is None or evidence < demanded(self.bench):
             return steps
+        name, trial = found
+        settled, dropped = self.prune(self.settle(trial), spare=name)
+        seen = replace(steps[-1], evidence={**steps[-1].evidence, name: evidence})
+        return self.forward(settled, [*steps[:-1], seen, Step(settled, name, dropped, ())], MUCH)
+
+    def unseen(self, trial: Trial, least: float) -> tuple[str, Trial] | None:
+        """The best model with a law with internal states, by name, beside one fitted trajectory, if the law promises to take
+        ``least`` off the sum of squares."""
+        if not trial.tied or not adequate(trial) or self.bench.outright or len(trial.names) >= MOST_EFFECTS:
+            return None
+        found: list[tuple[str, Trial]] = []
         for name, law in self.bench.laws.items():
-            if not law.states or law.family or name in final.names:
+            if not law.states or law.family or name in trial.names:
                 continue
             self.progress(f"looking for {name} under the noise", 0.65)
-            fall, effect = promised(self.bench, final, law)
-            if fall < GLIMPSED * demanded(self.bench):
-                continue
-            effects = {**self.bench.effects(final), name: effect}
-            trial = self._keep(self.bench.fit(effects, final, tied=True, followed=True))
-            if not trial.done and trial.criterion < final.criterion:
-                trial = self.finish(trial)
-            evidence = gain(final, trial)
-            if evidence > demanded(self.bench):
-                settled, dropped = self.prune(self.settle(trial), spare=name)
-                seen = replace(steps[-1], evidence={**steps[-1].evidence, name: evidence})
-                return self.forward(settled, [*steps[:-1], seen, Step(settled, name, dropped, ())], MUCH)
-        return steps
+            telling = promises(self.bench, trial, law)
+            # Its frequency is a guess, and what is fitted from one need not be the best there is.
+            for fall, effect in telling[:LIKELY]:
+                if fall > max(least, HALF * telling[0][0]):
+                    effects = {**self.bench.effects(trial), name: effect}
+                    fitted = self.bench.fit(effects, trial, tied=True, followed=True, patience=WHOLE)
+                    found.append((name, self._keep(fitted)))
+        return min(found, key=lambda one: one[1].criterion, default=None)
 
     def runs_through(self, trial: Trial) -> bool:
         """Whether a model of a link that is not seen was judged by one run through the record, as it has to stay."""
@@ -298,6 +308,11 @@ class Search(Tried):
                 current = relieved
                 steps[-1] = replace(steps[-1], trial=current)
                 continue
+            hidden = None if self.bench.laws[name].states else self.unseen(current, self.worth_a_look(current, tried[name]))
+            if hidden is not None and tried[name].criterion - hidden[1].criterion > demanded(self.bench):
+                # What acts through a state under the noise leaves less: it goes first.
+                name, tried[hidden[0]] = hidden
+                steps[-1] = replace(steps[-1], evidence={**evidence, name: gain(current, tried[name])})
             settled = self.settle(tried[name])
             if self.bench.laws[name].states and not settled.tied and (plain := self.clear(current, tried, least)):
                 # It soaked up what free windows leave, and no trajectory follows it: what acts without a state goes first.
@@ -307,6 +322,10 @@ class Search(Tried):
             current, dropped = self.prune(settled, spare=name)
             steps.append(Step(current, name, replaced + dropped, ()))
         return steps
+
+    def worth_a_look(self, before: Trial, after: Trial) -> float:
+        """What a law with internal states must promise in the place of an addition: the promise of a guess is a part of it."""
+        return max(GLIMPSED * demanded(self.bench), HALF * 2.0 * (before.cost - after.cost))
 
     def helps(self, current: Trial, tried: dict[str, Trial]) -> bool:
         """Whether any of some candidates brings what is demanded."""

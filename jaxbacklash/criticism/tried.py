@@ -97,14 +97,16 @@ class Tried:
         return self.known[key]
 
     def joined(self, effects: dict[str, AbstractEffect], before: Trial, patience: int = PATIENCE) -> Trial:
-        """A tied fit from the windows of another model; where it sticks, as dry friction may, its windows are let go first."""
+        """A tied fit from the windows of another model; where it sticks, as dry friction may, or creeps along a curved valley,
+        its windows are let go first."""
         trial = self.bench.fit(effects, before, tied=True, patience=patience)
-        if trial.misfit < (STUCK if trial.done else 1.0) * before.misfit:
+        better = trial.misfit < (STUCK if trial.done else 1.0) * before.misfit
+        if better and (trial.done or self.dry(trial)):
             return trial
         free = self._keep(self.bench.fit(effects, before, tied=False))
         again = self.bench.fit(self.bench.effects(free), free, tied=True, patience=patience)
         best = min(trial, again, key=lambda t: t.cost)
-        return best if follows(best, free) else self.softly(best)
+        return best if better or follows(best, free) else self.softly(best)
 
     def loosened(self, trial: Trial) -> Trial:
         """The same model with its windows free."""
@@ -123,11 +125,12 @@ class Tried:
         return self.known[key]
 
     def relieved(self, before: Trial, after: Trial) -> Trial:
-        """A model that dry friction may have stuck, given its turn again before a larger one or a richer law takes its place.
+        """A model whose search may have stuck, given its turn again before a larger one or a richer law takes its place.
 
-        Dry friction makes the cost of one trajectory jagged: an addition that does nothing else may shake the search loose.
+        Dry friction makes the cost of one trajectory jagged, a long trajectory has many minima, and some searches end before
+        they have arrived: an addition that does nothing else may bring them on.
         """
-        if not (before.tied and after.tied and self.dry(before)):
+        if not (before.tied and after.tied):
             return before
         more = after.names - before.names
         beside = self.without(after, next(iter(more))) if len(more) == 1 and before.names < after.names else before

@@ -28,12 +28,13 @@ WEAKEST, STRONGEST = 0.05, 3.0
 """Sizes, as multiples of the guess, within which the promise of a straight line is believed."""
 
 
-def promised(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> tuple[float, AbstractEffect]:
-    """The likeliest of a law's guesses beside a tied trial, at the size that promises most.
+def promises(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> list[tuple[float, AbstractEffect]]:
+    """What a law's guesses promise beside a tied trial, the best first; none where none does.
 
     Returns
     -------
-    Fall of the sum of squares that it promises, in units of the noise, 0 where none does; the law to start a fit from
+    Fall of the sum of squares that each promises at its best size, in units of the noise, and the law of that size to start a
+    fit from
     """
     guesses = law.guesses(trial.system)
     problem, _ = bench.problem(bench.effects(trial), trial.system)
@@ -50,7 +51,7 @@ def promised(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> tuple
 
     still, predicted = answer(np.zeros(()))
     along = model_motion(bench, predicted)
-    best = 0.0, guesses[0]
+    found: list[tuple[float, AbstractEffect]] = []
     for guess, torque in zip(guesses, own_torques(guesses, trial.system, along)):
         torque = np.interp(edges, along.t, torque)
         once = answer(SHARE * torque)[0] - still
@@ -62,13 +63,13 @@ def promised(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> tuple
         if not (np.isfinite(curvature) and curvature > 0.0 and slope < 0.0):
             continue
         fall = slope**2 / curvature
-        if not best[0] < fall < 2.0 * still:
+        if not fall < 2.0 * still:
             continue
         # Where the answer is no parabola, noise is too small for a trajectory to bend so little: it promises nothing.
         further = slope * FURTHER * SHARE + 0.5 * curvature * (FURTHER * SHARE) ** 2
         if abs(answer(FURTHER * SHARE * torque)[0] - still - further) < BENT * abs(further):
-            best = fall, guess.scaled(float(np.clip(-slope / curvature, WEAKEST, STRONGEST)))
-    return best
+            found.append((fall, guess.scaled(float(np.clip(-slope / curvature, WEAKEST, STRONGEST)))))
+    return sorted(found, key=lambda promise: -promise[0])
 
 
 def model_motion(bench: Workbench, predicted: Prediction) -> Motion:
