@@ -110,6 +110,18 @@ def test_a_tied_fit_that_creeps_goes_by_free_windows(slides):
     assert [tied for _, tied in search.bench.asked] == ([True] if slides else [True, False, True])
 
 
+@pytest.mark.parametrize("cost", [90.0, 110.0])
+def test_a_tied_model_goes_by_its_own_free_windows(cost):
+    names = frozenset({"gravity"})
+    tied, free, again = Model(names, cost=100.0), Model(names, cost=70.0, tied=False), Model(names, cost=cost)
+    search = Search(Bench(free, again))
+    search.known[names, False] = Model(names, cost=60.0, tied=False)  # of another minimum: not to be started from
+    begun = []
+    search.bench.fit = lambda effects, start, **_: begun.append(start) or search.bench.answers.pop(0)
+    assert search.retied(tied).cost == min(cost, 100.0)
+    assert begun == [tied, free]
+
+
 @pytest.mark.parametrize(("size", "again"), [(2.0, True), (10.0, False)])
 def test_more_than_an_effect_can_account_for_is_first_looked_for_without_it(monkeypatch, size, again):
     """An effect two standard errors from zero takes 2 off the cost; where 40 fall with it, the search had not arrived."""

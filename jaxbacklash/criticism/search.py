@@ -164,7 +164,7 @@ class Search(Tried):
                 if fall > max(least, HALF * telling[0][0]):
                     effects = {**self.bench.effects(trial), name: effect}
                     fitted = self.bench.fit(effects, trial, tied=True, followed=True, patience=WHOLE)
-                    found.append((name, self._keep(fitted)))
+                    found.append((name, self._keep(self.retied(fitted))))
         return min(found, key=lambda one: one[1].criterion, default=None)
 
     def runs_through(self, trial: Trial) -> bool:

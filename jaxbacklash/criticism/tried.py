@@ -108,6 +108,13 @@ class Tried:
         best = min(trial, again, key=lambda t: t.cost)
         return best if better or follows(best, free) else self.softly(best)
 
+    def retied(self, tied: Trial) -> Trial:
+        """A tied model or, where that is better, the same by way of free windows: one long trajectory has many minima."""
+        free = self.bench.fit(self.bench.effects(tied), tied, patience=WHOLE)
+        self._keep(free)
+        again = self.bench.fit(self.bench.effects(free), free, tied=True, patience=WHOLE)
+        return min(tied, again, key=lambda t: t.cost)
+
     def loosened(self, trial: Trial) -> Trial:
         """The same model with its windows free."""
         key = (trial.names, False)
