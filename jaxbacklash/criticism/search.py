@@ -220,7 +220,7 @@ class Search(Tried):
                 if other.names not in seen and lead > self.lead(other, final, name) and adequate(other):
                     relieved = self.shaken(final)
                     if final.cost - relieved.cost > LOOSER:
-                        return self.swap([*steps[:-1], replace(steps[-1], trial=relieved)], seen)
+                        return self.swap([*steps[:-1], self.freed(steps[-1], relieved)], seen)
                     other = other if other.done else self.finish(other)
                     added = next(iter(other.names - final.names))
                     path = self.reduced([*steps[:-1], Step(other, added, (), ())])
@@ -305,8 +305,8 @@ class Search(Tried):
             relieved = self.relieved(current, tried[name])
             if current.cost - relieved.cost > LOOSER:
                 # What was stuck gets its turn again: what came free beside an effect is no evidence for that effect.
-                current = relieved
-                steps[-1] = replace(steps[-1], trial=current)
+                steps[-1] = self.freed(steps[-1], relieved)
+                current = steps[-1].trial
                 continue
             hidden = None if self.bench.laws[name].states else self.unseen(current, self.worth_a_look(current, tried[name]))
             if hidden is not None and tried[name].criterion - hidden[1].criterion > demanded(self.bench):
@@ -322,6 +322,11 @@ class Search(Tried):
             current, dropped = self.prune(settled, spare=name)
             steps.append(Step(current, name, replaced + dropped, ()))
         return steps
+
+    def freed(self, step: Step, relieved: Trial) -> Step:
+        """A step whose search was stuck and is no more, without what stood in for that."""
+        trial, dropped = self.prune(relieved, spare=step.added)
+        return replace(step, trial=trial, dropped=step.dropped + dropped)
 
     def worth_a_look(self, before: Trial, after: Trial) -> float:
         """What a law with internal states must promise in the place of an addition: the promise of a guess is a part of it."""
