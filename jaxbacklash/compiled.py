@@ -1,22 +1,23 @@
-"""Traced programs that the next process finds ready.
+"""Compiled programs that the next process finds ready.
 
 JAX's own cache spares the compiler, not the tracing: a program of the size of a fit takes a second or two of Python before
-that cache can even be asked. Here what tracing gives (`jax.export`) is kept under a name that can be told without tracing:
-what is called, the fixed parts of its arguments, the shapes and kinds of their arrays, this package's source, and the
-versions of what traces it.
+that cache can even be asked. Here the machine's code itself (`jaxbacklash.program_file`) is kept under a name that can be told
+without tracing: what is called, the fixed parts of its arguments, the shapes and kinds of their arrays, this package's source,
+the versions of what traces and compiles it, and the processor it is for.
 """
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import hashlib
 import io
 import os
 import pickle
+import platform
 import sys
-import tempfile
 import threading
-import time
+import uuid
 from collections.abc import Callable
 from concurrent.futures import Future
 from importlib.metadata import version
@@ -25,25 +26,17 @@ from typing import Any
 
 import equinox as eqx
 import jax
-import jax.export
 import numpy as np
-from jax.sharding import Mesh, NamedSharding, PartitionSpec
+from jax.stages import Compiled
+
+from . import read_ahead
+from .program_file import SUFFIX, devices_of, read_frame, write
 
 Key = tuple[Any, ...]
-Loaded = tuple[jax.export.Exported, Any]
-"""A program, and what calls it."""
-MONTH = 30 * 24 * 3600.0
 KNOWN = ("jaxbacklash", "jax", "jaxlib", "equinox", "diffrax", "optimistix", "lineax", "numpy")
 """Packages whose code is told by their version or, for this one, by its source."""
 UNKEPT = (pickle.PicklingError, AttributeError, TypeError, ValueError, NotImplementedError, ImportError)
-"""What arguments that cannot be written down, or programs that cannot be exported, raise."""
-
-
-ahead: dict[str, Future[Loaded | None]] = {}
-"""Programs by file name that are being read before they are asked for (`jaxbacklash.read_ahead`); None if they cannot be."""
-used: dict[str, None] = {}
-used_aside: dict[str, None] = {}
-"""File names of the programs that this process's main thread has called, in order, and those called by other threads."""
+"""What arguments or programs that cannot be written down raise."""
 
 
 class _Foreign(Exception):
@@ -51,7 +44,7 @@ class _Foreign(Exception):
 
 
 def kept_jit(function: Callable[..., Any]) -> Callable[..., Any]:
-    """`equinox.filter_jit` whose traced programs outlive the process, once `jaxbacklash.start` has named a cache.
+    """`equinox.filter_jit` whose compiled programs outlive the process, once `jaxbacklash.start` has named a cache.
 
     Arguments are positional. A program is not kept, only jitted, where its arguments hold classes or functions of other
     packages (a user's own law may change without changing its name), and where it is called within another traced
@@ -93,9 +86,7 @@ def kept_jit(function: Callable[..., Any]) -> Callable[..., Any]:
         return program(arrays) if isinstance(program, _Program) else program(*args)
 
     def ready(*args: Any) -> None:
-        program, _ = made(args)
-        if isinstance(program, _Program):
-            program.link()
+        made(args)
 
     call.programs, call.ready = programs, ready  # type: ignore[attr-defined]
     return call
@@ -112,55 +103,33 @@ def _is_array(leaf: Any) -> bool:
 class _Program:
     """A program from arrays to arrays, and the tree that its results make up."""
 
-    def __init__(self, exported: jax.export.Exported, frame: Any, call: Any = None, name: str = ""):
-        self.exported, self.frame, self.call, self.name = exported, frame, call or caller(exported), name
-        self.linked, self.lock = call is not None, threading.Lock()
-        self.plain = exported.nr_devices > 1 or exported.platforms == ("cpu",)
-
-    def link(self) -> None:
-        """Compile it, so that the first call need not."""
-        with self.lock:
-            if not self.linked:
-                link(self.exported, self.call)
-            self.linked = True
+    def __init__(self, call: Compiled, frame: Any, name: str):
+        self.call, self.frame, self.name = call, frame, name
+        self.plain = devices_of(call) > 1 or jax.default_backend() == "cpu"
 
     def __call__(self, arrays: list[Any]) -> Any:
-        self.link()
-        (used if threading.current_thread() is threading.main_thread() else used_aside)[self.name] = None
-        # An array that sits on one device cannot be handed to several; and for one that came out of another program, a program
-        # would be compiled once more. On a CPU numpy's view of it costs nothing.
+        in_main = threading.current_thread() is threading.main_thread()
+        (read_ahead.used if in_main else read_ahead.used_aside)[self.name] = None
+        # An array that sits on one device cannot be handed to a program for several. On a CPU numpy's view of it costs nothing.
         results = iter(self.call([np.asarray(a) for a in arrays] if self.plain else arrays))
         return jax.tree.map(lambda leaf: next(results) if leaf is _Here else leaf, self.frame)
-
-
-def link(exported: jax.export.Exported, call: Any) -> None:
-    """Compile what calls a program, or read what was compiled before."""
-    call.lower([jax.ShapeDtypeStruct(v.shape, v.dtype) for v in exported.in_avals]).compile()
-
-
-def caller(exported: jax.export.Exported) -> Any:
-    """What calls a program, on as many devices as it was made for."""
-    if exported.nr_devices == 1:
-        return jax.jit(exported.call)
-    mesh = Mesh(np.asarray(jax.devices()[: exported.nr_devices]), ("cores",))
-    return jax.jit(exported.call, in_shardings=NamedSharding(mesh, PartitionSpec()))
 
 
 def _find(function: Callable[..., Any], args: Any, kinds: Any, folder: Path) -> _Program | None:
     """The program from its file, or traced and kept there; nothing where it cannot be kept."""
     try:
-        path = folder / f"{_name(function, args, kinds)}.program"
+        path = folder / f"{_name(function, args, kinds)}{SUFFIX}"
         found = _load(path)
         if found is None:
-            found = _trace(function, args)
-            found.name = path.name
-            _keep(found, path)
+            found = _make(function, args, path.name)
+            with contextlib.suppress(*UNKEPT):  # this process has it
+                write(path, found.call, found.frame)
     except (_Foreign, *UNKEPT):
         return None
     return found
 
 
-def _trace(function: Callable[..., Any], args: Any) -> _Program:
+def _make(function: Callable[..., Any], args: Any, name: str) -> _Program:
     fixed = eqx.filter(args, _is_array, inverse=True)
     leaves, structure = jax.tree.flatten(args)
     frame: Any = None
@@ -173,35 +142,17 @@ def _trace(function: Callable[..., Any], args: Any) -> _Program:
         frame = jax.tree.map(lambda leaf: _Here if eqx.is_array_like(leaf) else leaf, result)
         return jax.tree.leaves(eqx.filter(result, eqx.is_array_like))
 
-    exported = jax.export.export(jax.jit(flat))([leaf for leaf in leaves if _is_array(leaf)])
-    return _Program(exported, frame)
+    # A name that JAX's own cache cannot know: what comes out of that cache, written down once more, lacks some of its code.
+    flat.__name__ = f"{function.__name__}_{uuid.uuid4().hex}"
+    call = jax.jit(flat).lower([leaf for leaf in leaves if _is_array(leaf)]).compile()
+    return _Program(call, frame, name)
 
 
 def _load(path: Path) -> _Program | None:
     try:
-        text, frame = pickle.loads(path.read_bytes())
-        begun = ahead.get(path.name)
-        exported, call = (begun and begun.result()) or (jax.export.deserialize(text), None)
-        program = _Program(exported, pickle.loads(frame), call, path.name)
-        os.utime(path)
+        return _Program(read_ahead.read(path), read_frame(path), path.name)
     except Exception:  # missing, half written, or of another making: it is made anew
         return None
-    return program
-
-
-def _keep(program: _Program, path: Path) -> None:
-    # The frame apart: reading it loads the modules of its classes.
-    text = pickle.dumps((bytes(program.exported.serialize()), pickle.dumps(program.frame)))
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-            file.write(text)
-        os.replace(file.name, path)
-        for old in path.parent.iterdir():
-            if time.time() - old.stat().st_mtime > MONTH:
-                old.unlink()
-    except OSError:  # a full disk or a read-only home costs time, nothing else
-        return
 
 
 def _name(function: Callable[..., Any], args: Any, kinds: Any) -> str:
@@ -225,7 +176,7 @@ class _Known(pickle.Pickler):
 
 @functools.cache
 def _setting() -> str:
-    """This package's source, the versions of what it runs on, and what is set while tracing."""
+    """This package's source, the versions of what it runs on, the processor, and what is set while tracing and compiling."""
     here = Path(__file__).parent
     source = hashlib.sha256()
     for path in sorted(here.rglob("*.py")):
@@ -233,4 +184,15 @@ def _setting() -> str:
     versions = [f"{name} {version(name)}" for name in KNOWN[1:]]
     devices = [f"{d.platform} {d.device_kind}" for d in jax.devices()]
     setting: Any = jax.config
-    return repr((source.hexdigest(), versions, devices, setting.jax_enable_x64, sys.version))
+    flags = os.environ.get("XLA_FLAGS", "")
+    return repr((source.hexdigest(), versions, devices, setting.jax_enable_x64, sys.version, flags, processor()))
+
+
+def processor() -> str:
+    """What tells a processor's set of instructions from another's: code made for one may not run on the other."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        lines = []
+    features = next((line for line in lines if line.lower().startswith(("flags", "features"))), "")
+    return f"{platform.machine()} {platform.processor()} {features}"

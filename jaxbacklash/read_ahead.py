@@ -1,24 +1,30 @@
-"""Programs that the last run of a command asked for, read and linked while this run's libraries load.
+"""Programs that the last run of a command asked for, read while this run's libraries load.
 
-XLA needs a second to read the programs of `refine` from its cache, and does it without Python, which is busy importing
-meanwhile.
+XLA needs a second to read the programs of `refine`, and does it without Python, which is busy importing meanwhile.
 """
 
 from __future__ import annotations
 
 import contextlib
 import os
-import pickle
 import threading
 from collections.abc import Iterator
 from concurrent.futures import Future
 from pathlib import Path
 
-import jax
+from jax.stages import Compiled
 
-from . import compiled
+from . import program_file
 
 SUFFIX = ".used"
+LONG = 0.1
+"""Programs that are so large a part of the largest are read first: a wait for others is short."""
+
+ahead: dict[str, Future[Compiled | None]] = {}
+"""Programs by file name that are read before they are asked for; None if they cannot be."""
+used: dict[str, None] = {}
+used_aside: dict[str, None] = {}
+"""File names of the programs that this process's main thread has called, in order, and those called by other threads."""
 
 
 @contextlib.contextmanager
@@ -34,33 +40,48 @@ def reading_ahead(command: str, folder: Path | None) -> Iterator[None]:
         yield
         return
     notes, ended = folder / "programs" / f"{command}{SUFFIX}", threading.Event()
-    for name in _names(notes):
-        compiled.ahead[name] = Future()
-    reader = threading.Thread(target=_read, args=(folder / "programs", list(compiled.ahead), ended))
+    for name in _long_first(notes.parent, _names(notes)):
+        ahead[name] = Future()
+    reader = threading.Thread(target=_read, args=(folder / "programs", dict(ahead), ended))
     reader.start()
     try:
         yield
     finally:
         ended.set()  # a thread that is left inside XLA while Python goes takes the process with it
         reader.join()
-        compiled.ahead.clear()
+        ahead.clear()
         # What the main thread waits for comes first.
-        if asked := [*compiled.used, *compiled.used_aside]:
+        if asked := [*used, *used_aside]:
             _write(notes, asked)
 
 
-def _read(folder: Path, names: list[str], ended: threading.Event) -> None:
-    """Make one program after the other ready to be called, in the order in which they were used."""
-    for name in names:
+def read(path: Path) -> Compiled:
+    """What calls a kept program, read ahead or now. Raises whatever is wrong with its file."""
+    begun = ahead.get(path.name)
+    # One whose turn has not come need not wait for it.
+    found = begun.result() if begun is not None and not begun.cancel() else None
+    return program_file.read(path) if found is None else found
+
+
+def _read(folder: Path, coming: dict[str, Future[Compiled | None]], ended: threading.Event) -> None:
+    """Make one program after the other ready to be called, unless somebody was faster."""
+    for name, future in coming.items():
+        if not future.set_running_or_notify_cancel():
+            continue
         found = None
         if not ended.is_set():
             with contextlib.suppress(Exception):  # missing, half written, of another making: the one who needs it makes it anew
-                text, _ = pickle.loads((folder / name).read_bytes())
-                exported = jax.export.deserialize(text)
-                call = compiled.caller(exported)
-                compiled.link(exported, call)
-                found = exported, call
-        compiled.ahead[name].set_result(found)
+                found = program_file.read(folder / name)
+        future.set_result(found)
+
+
+def _long_first(folder: Path, names: list[str]) -> list[str]:
+    sizes = {}
+    for name in names:
+        with contextlib.suppress(OSError):
+            sizes[name] = (folder / name).stat().st_size
+    long = LONG * max(sizes.values(), default=0)
+    return sorted(sizes, key=lambda name: sizes[name] < long)
 
 
 def _names(notes: Path) -> list[str]:
