@@ -344,8 +344,7 @@ class Search(Tried):
             held = {c.name: self.add(current, c) for c in grips}
             if any(gain(current, t) > demanded(self.bench) for t in held.values()):
                 return held
-        scale = max(1.0, current.misfit**2) * current.correlation
-        telling = [c for c in ranking if c.gain / scale > 0.5 * demanded(self.bench)][:TRIED]
+        telling = [c for c in ranking if self.may_help(current, c)][:TRIED]
         tried: dict[str, Trial] = {}
         # Friction's memory is looked for first where no static law promises to do, or there is friction that may have one.
         looked = bool(telling) and (telling[0].predicted > ADEQUATE or self.rubs(current))
@@ -358,7 +357,8 @@ class Search(Tried):
             if c.gain < (CLOSE if enough else HOPEFUL) * telling[0].gain:
                 continue
             self.progress(f"trying {c.name}", 0.4)
-            tried[c.name] = self.add(current, c)
+            rival = min(tried.values(), key=lambda t: t.criterion) if enough else None
+            tried[c.name] = self.add(current, c, rival)
             if not looked and not explained(tried[c.name]):
                 tried, looked = tried | self.memories(current, ranking), True
         if not explained(current):
@@ -366,6 +366,17 @@ class Search(Tried):
             kin = [c for c in ranking if c.name not in tried and not current.names.isdisjoint(self.bench.laws[c.name].absorbs)]
             tried |= {c.name: self.add(current, c) for c in kin}
         return {name: trial for name, trial in tried.items() if math.isfinite(trial.criterion)}
+
+    def may_help(self, current: Trial, candidate: Candidate) -> bool:
+        """Whether a candidate's predicted gain is half of what it must bring.
+
+        Corners make predictions beside dry friction poor ones: there its parameters are not counted against it.
+        """
+        law = self.bench.laws[candidate.name]
+        smooth = current.tied and adequate(current) and not (law.slides or self.dry(current))
+        own = len(strengths(candidate.effect)) * math.log(max(self.bench.record.samples, 2)) if smooth else 0.0
+        scale = max(1.0, current.misfit**2) * current.correlation
+        return candidate.gain / scale > 0.5 * (demanded(self.bench) + own)
 
     def finished(self, current: Trial, tried: dict[str, Trial]) -> dict[str, Trial]:
         """The same candidates, those fitted to the end that lie close to the best."""

@@ -9,7 +9,7 @@ from ..mechanics import AbstractEffect
 from ..parameters import specs, values, with_values
 from .candidates import Candidate
 from .cuts import cut_free
-from .evidence import significance
+from .evidence import demanded, significance
 from .memories import Member
 from .workbench import PATIENCE, Trial, Workbench, adequate, strengths
 
@@ -17,6 +17,8 @@ STUCK = 1.01
 """A tied fit that misses by so much more than its free windows has stuck, or their freedom hides what the model lacks."""
 SLIGHT = 0.03
 """Share of its predicted strength at which an effect begins where from the whole of it the fit has stuck."""
+ROUGH = 1.0
+"""How much of half the sum of squares may be left to gain by a model that can hardly be chosen."""
 LOOSER = 1.0
 """A fit that comes out so much lower when it is given its turn again had stuck."""
 WHOLE = 60
@@ -76,8 +78,11 @@ class Tried:
         self.known = {key: trial for key, trial in self.known.items() if not trial.tied}
         return self._keep(parted)
 
-    def add(self, before: Trial, candidate: Candidate) -> Trial:
-        """The model with one more effect, in place of simpler laws it contains, fitted as the model before was: tied or free."""
+    def add(self, before: Trial, candidate: Candidate, rival: Trial | None = None) -> Trial:
+        """The model with one more effect, in place of simpler laws it contains, fitted as the model before was: tied or free.
+
+        Beside a ``rival`` with fewer parameters its free windows are only fitted until it is clear that it does not replace that.
+        """
         present = self.bench.effects(before)
         effect = candidate.effect
         for name in type(effect).absorbs:
@@ -89,7 +94,14 @@ class Tried:
         key = (names, before.tied or self.bench.grips(names))
         if key not in self.known:
             effects = {**present, candidate.name: effect}
-            trial = self._keep(self.joined(effects, before) if before.tied else self.bench.fit(effects, before))
+            start = before
+            if rival is not None and not key[1]:
+                start = self.bench.fit(effects, before, near=ROUGH)
+                # What is left to gain is less than half of that lead.
+                behind = start.criterion - rival.criterion > 2.0 * demanded(self.bench) and start.cost < before.cost
+                if behind and len(start.free) > len(rival.free):
+                    return self._keep(start)
+            trial = self._keep(self.joined(effects, before) if before.tied else self.bench.fit(effects, start))
             if trial.cost > before.cost and names > before.names:
                 # The larger model holds the smaller one: it has stuck on the way from the strength that was predicted.
                 slight = with_values(effect, {n: SLIGHT * values(effect)[n] for n in strengths(effect)})

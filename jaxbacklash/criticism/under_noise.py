@@ -23,7 +23,7 @@ SHARE = 0.01
 FURTHER, BENT = 4.0, 0.25
 """A third such part, at which the answer is foretold, and how far off it may be."""
 STEPS = 3
-"""Linearisations that the fit gets to answer with: it starts where it had ended."""
+"""Steps that the fit gets to answer with, the first where it had ended."""
 WEAKEST, STRONGEST = 0.05, 3.0
 """Sizes, as multiples of the guess, within which the promise of a straight line is believed."""
 
@@ -46,7 +46,7 @@ def promises(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> list[
 
     def answer(torque: np.ndarray) -> tuple[float, Prediction]:
         pushed = eqx.tree_at(lambda p: p.windows.force, problem, applied + torque)
-        stats = minimise(pushed, unknowns, Levenberg(atol=1e-4, damping=1e-9, limit=STEPS)).stats
+        stats = minimise(pushed, unknowns, Levenberg(atol=1e-4, damping=1e-9, limit=STEPS, costing=True)).stats
         return float(stats["cost"]), stats["predicted"]
 
     still, predicted = answer(np.zeros(()))

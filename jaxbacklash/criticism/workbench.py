@@ -16,7 +16,7 @@ import numpy as np
 from ..fitting.fit import prepare
 from ..fitting.held import held, search_held
 from ..fitting.levenberg import Levenberg, Minimum, minimise
-from ..fitting.search import ADEQUATE, LOOSE, TIES, freedom, tie_windows
+from ..fitting.search import ADEQUATE, LOOSE, NEAR, TIES, freedom, tie_windows
 from ..fitting.setup import first_guess, free_names, held_system, make_problem
 from ..fitting.shooting import Problem, Unknowns
 from ..fitting.softened import through_softened
@@ -128,7 +128,7 @@ class Workbench:
 
     def fit(
         self, effects: dict[str, AbstractEffect], start: Trial | None = None, *, joint: System | None = None,
-        tied: bool = False, patience: int = PATIENCE, followed: bool = False, through: bool = False,
+        tied: bool = False, patience: int = PATIENCE, followed: bool = False, through: bool = False, near: float = NEAR,
     ) -> Trial:  # fmt: skip
         """Fit the joint with these effects, from their values and from the windows of an earlier fit.
 
@@ -141,6 +141,7 @@ class Workbench:
         patience : linearisations allowed
         followed : take internal states that ``start`` does not have from the laws followed along the measured motion
         through : run through the whole record from one start, as a link that friction holds always does
+        near : how much of half the sum of squares, in units of the noise, free windows may leave to gain
         """
         begin = joint if joint is not None else (self.base if start is None else start.system)
         grips = [name for name in effects if name in self.outright]
@@ -167,7 +168,7 @@ class Workbench:
             ):
                 problem, solution, _ = tie_windows(problem, unknowns, TIES[1], limit=patience)
         else:
-            solution = minimise(problem, unknowns, Levenberg(limit=patience, atol=0.1, rtol=ENOUGH))
+            solution = minimise(problem, unknowns, Levenberg(limit=patience, atol=near, rtol=ENOUGH))
         return self._trial(problem, solution, frozenset(effects), free, tied, patience)
 
     def fit_softly(self, trial: Trial, patience: int, way: int) -> Trial:

@@ -45,13 +45,14 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
     """Levenberg-Marquardt whose linear algebra knows the arrow (`jaxbacklash.fitting.arrow`).
 
     ``fn`` is not differentiated as a whole: ``args`` is the `Problem`, whose blocks are built by
-    `jaxbacklash.fitting.shooting.linearise`. The first four are those of `jaxbacklash.fitting.levenberg.Levenberg`.
+    `jaxbacklash.fitting.shooting.linearise`. The first five are those of `jaxbacklash.fitting.levenberg.Levenberg`.
     """
 
     rtol: Array = 0.0
     atol: Array = 1e-3
     damping: Array = 1e-3
     limit: Array = 60
+    costing: Array = False
     norm: Any = eqx.field(default=optx.max_norm, static=True)
 
     def init(self, fn: Any, y: Unknowns, args: Problem, options: Any, f_struct: Any, aux_struct: Any, tags: Any) -> ArrowState:
@@ -71,7 +72,10 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         better = (shot.cost < state.blocks.cost) | (state.steps == 0)
         pick = lambda new, old: jnp.where(better, new, old)  # noqa: E731
         fell = pick(state.blocks.cost - shot.cost, state.fell)
-        blocks = jax.lax.cond(better, lambda: _linearise(args, state.trial, shot), lambda: state.blocks)
+        # Derivatives of a last step that only its cost is asked of would lead nowhere.
+        needed = better & ~(self.costing & (state.steps > 0) & (state.steps + 1 >= self.limit))
+        blocks = jax.lax.cond(needed, lambda: _linearise(args, state.trial, shot), lambda: state.blocks)
+        blocks = eqx.tree_at(lambda b: b.cost, blocks, pick(shot.cost, state.blocks.cost))
         y = jax.tree.map(pick, state.trial, y)
         # Where dry friction makes the cost jagged, steps that only just help lead into corners.
         kept = (state.blocks.cost - shot.cost) / state.gain
