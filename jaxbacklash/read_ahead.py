@@ -17,6 +17,8 @@ from jax.stages import Compiled
 from . import program_file
 
 SUFFIX = ".used"
+FIRST = 12
+"""Programs that are read ahead: what a run calls later depends on what it finds, and would be read while it computes."""
 LONG = 0.1
 """Programs that are so large a part of the largest are read first: a wait for others is short."""
 
@@ -51,7 +53,7 @@ def reading_ahead(command: str, folder: Path | None) -> Iterator[None]:
         reader.join()
         ahead.clear()
         # What the main thread waits for comes first.
-        if asked := [*used, *used_aside]:
+        if asked := [*used, *used_aside][:FIRST]:
             _write(notes, asked)
 
 

@@ -7,7 +7,7 @@ import jaxbacklash as jb
 from jaxbacklash.criticism.along_motion import motion, own_torques
 from jaxbacklash.criticism.evidence import demanded
 from jaxbacklash.criticism.search import GLIMPSED
-from jaxbacklash.criticism.under_noise import promises
+from jaxbacklash.criticism.under_noise import own_rest, promises
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.records import Record
@@ -53,6 +53,33 @@ def test_a_joint_without_it_promises_nothing(times):
     bench, alone = trajectory(noisier(record, times, 6), rig)
     promised = promises(bench, alone, bench.laws["flexible_link"])
     assert all(fall < GLIMPSED * demanded(bench) for fall, _ in promised)
+
+
+def glimpses(record, rig, delay):
+    """Evidence of the quick look for a flexible link beside a fitted delay, as it is and less what the look itself leaves."""
+    base, free, _ = base_system(record, "joint", rig.inertia)
+    bench = Workbench(record, base, free, 0.2)
+    loose = bench.fit({"sensor_delay": jb.SensorDelay(delay)}, patience=60)
+    tied = bench.fit(bench.effects(loose), loose, tied=True, patience=60)
+    guesses = bench.laws["flexible_link"].guesses(tied.system)
+    return [bench.quick.evidence(tied.system, tied.free, guesses, known) for known in (None, own_rest(bench, tied))]
+
+
+@pytest.mark.slow
+def test_a_delay_is_not_taken_for_a_flexible_link():
+    record, rig, effects, _ = hidden("sensor_delay", "chirp", 1)
+    seen, less = glimpses(record, rig, effects["sensor_delay"]["tau"])
+    needed = GLIMPSED * demanded(Workbench(record, *base_system(record, "joint", rig.inertia)[:2], 0.2))
+    assert seen > needed > 4.0 > less
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["chirp", "stepped"])
+def test_a_delay_hides_no_flexible_link(kind):
+    record, rig, _, _ = hidden("flexible_link", kind, 5, **LINK)
+    late = round(3e-3 / record.dt)
+    record = Record(record.t[:-late], {"x": record.channels["x"][late:], "z": record.channels["z"][:-late]})
+    assert min(glimpses(record, rig, 3e-3)) > 25.0
 
 
 @pytest.mark.parametrize("law", [jb.FlexibleLink(**LINK), jb.Gravity(-20.0), jb.CubicStiffness(1e6)])

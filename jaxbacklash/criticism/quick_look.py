@@ -73,15 +73,24 @@ class QuickLook:
         """Share of what a model leaves that the likeliest shape of a law takes away, 0 to 1."""
         return float(np.max(self._worth(system, free, variants)) ** 2)
 
-    def evidence(self, system: System, free: tuple[str, ...], variants: list[AbstractEffect]) -> float:
-        """Fall of the sum of squares, in units of the rows' own variance, by the likeliest shape of a law: near 1 by chance."""
-        return self.share(system, free, variants) * (self._acceleration.size - ORDER)
+    def evidence(
+        self, system: System, free: tuple[str, ...], variants: list[AbstractEffect], known: np.ndarray | None = None
+    ) -> float:
+        """Fall of the sum of squares, in units of the rows' own variance, by the likeliest shape of a law: near 1 by chance.
 
-    def _worth(self, system: System, free: tuple[str, ...], variants: list[AbstractEffect]) -> np.ndarray:
+        ``known`` (R,) is what the look itself leaves, where the model is right.
+        """
+        share = float(np.max(self._worth(system, free, variants, known)) ** 2)
+        return share * (self._acceleration.size - ORDER)
+
+    def _worth(
+        self, system: System, free: tuple[str, ...], variants: list[AbstractEffect], known: np.ndarray | None = None
+    ) -> np.ndarray:
         """Correlation of each variant's torque with what the model leaves, none where physics forbids its sign."""
         if self.blind:
             return np.zeros(len(variants))
         left, by = self.missing(system, free)
+        left = left if known is None else left - known
         name, told = canonical_name(variants[0]), np.stack([ravel(v) for v in variants])
         if name not in self._columns or not np.array_equal(self._columns[name][0], told):
             self._columns[name] = told, self.average(own_torques(variants, system, self.motion)).T

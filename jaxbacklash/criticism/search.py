@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
+import numpy as np
+
 from ..fitting.search import ADEQUATE, silent
 from ..mechanics import AbstractEffect
 from .candidates import Candidate, rank
@@ -13,7 +15,7 @@ from .evidence import AS_WELL, NOISE_FLOOR, UNEXPLAINED, demanded, excess, expla
 from .memories import families, may_replace, members
 from .tried import LOOSER, WHOLE, Tried
 from .tuning import apart
-from .under_noise import promises
+from .under_noise import own_rest, promises
 from .workbench import Trial, Workbench, adequate, strengths
 
 MOST_EFFECTS = 5
@@ -176,11 +178,13 @@ class Search(Tried):
 
         The joint's own numbers can take in most of what a flexible link does, and leave too little to look unexplained.
         """
-        return any(
-            self.bench.quick.evidence(trial.system, trial.free, law.guesses(trial.system)) > GLIMPSED * demanded(self.bench)
-            for name, law in self.bench.laws.items()
-            if law.states and not law.family and name not in trial.names
-        )
+        laws = [law for name, law in self.bench.laws.items() if law.states and not law.family and name not in trial.names]
+
+        def seen(known: np.ndarray | None = None) -> bool:
+            evidence = [self.bench.quick.evidence(trial.system, trial.free, law.guesses(trial.system), known) for law in laws]
+            return max(evidence, default=0.0) > GLIMPSED * demanded(self.bench)
+
+        return seen() and (not trial.tied or seen(own_rest(self.bench, trial)))
 
     def with_kin(self, steps: list[Step]) -> list[Step]:
         """Another path, where a near relative of a law with internal states explains with less beside it, or more."""

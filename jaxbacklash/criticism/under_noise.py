@@ -12,10 +12,11 @@ import numpy as np
 
 from ..fitting.levenberg import Levenberg, minimise
 from ..fitting.search import TIES
-from ..fitting.shooting import Prediction, Unknowns
+from ..fitting.shooting import Prediction, Problem, Unknowns
 from ..mechanics import AbstractEffect
 from ..records import Record
-from .along_motion import Motion, motion, own_torques
+from .along_motion import motion, own_torques
+from .quick_look import QuickLook
 from .workbench import Trial, Workbench
 
 SHARE = 0.01
@@ -37,9 +38,7 @@ def promises(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> list[
     fit from
     """
     guesses = law.guesses(trial.system)
-    problem, _ = bench.problem(bench.effects(trial), trial.system)
-    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1]))
-    unknowns = Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
+    problem, unknowns = as_it_ended(bench, trial)
     windows = bench.windows
     applied = np.asarray(windows.force)
     edges = np.asarray(windows.t0)[:, None] + float(windows.panel) * np.arange(applied.shape[1])
@@ -50,7 +49,7 @@ def promises(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> list[
         return float(stats["cost"]), stats["predicted"]
 
     still, predicted = answer(np.zeros(()))
-    along = model_motion(bench, predicted)
+    along = motion(model_record(bench, predicted))
     found: list[tuple[float, AbstractEffect]] = []
     for guess, torque in zip(guesses, own_torques(guesses, trial.system, along)):
         torque = np.interp(edges, along.t, torque)
@@ -72,8 +71,23 @@ def promises(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> list[
     return sorted(found, key=lambda promise: -promise[0])
 
 
-def model_motion(bench: Workbench, predicted: Prediction) -> Motion:
-    """The motion of a fitted trajectory at the samples of the record, that of the measured one where windows end before it."""
+def own_rest(bench: Workbench, trial: Trial) -> np.ndarray:
+    """What the quick look leaves of a tied trial's own motion, (R,): nothing is missing from that, but the look takes what the
+    measuring chain does, a delay say, for straight lines."""
+    problem, unknowns = as_it_ended(bench, trial)
+    predicted = minimise(problem, unknowns, Levenberg(limit=1)).stats["predicted"]
+    return QuickLook(model_record(bench, predicted)).missing(trial.system, trial.free)[0]
+
+
+def as_it_ended(bench: Workbench, trial: Trial) -> tuple[Problem, Unknowns]:
+    """The problem of a tied trial, and its unknowns where its fit had ended."""
+    problem, _ = bench.problem(bench.effects(trial), trial.system)
+    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1]))
+    return problem, Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
+
+
+def model_record(bench: Workbench, predicted: Prediction) -> Record:
+    """A fitted trajectory at the samples of the record, the measured one where windows end before it."""
     record = bench.record
     seen = np.asarray(bench.windows.weight) > 0.0
     channels = dict(record.channels)
@@ -81,4 +95,4 @@ def model_motion(bench: Workbench, predicted: Prediction) -> Motion:
         if name in channels and np.shape(values) == seen.shape and not (name == "x" and bench.windows.by_force):
             values = np.asarray(values)[seen][: record.samples]
             channels[name] = np.concatenate([values, channels[name][values.size :]])
-    return motion(Record(record.t, channels))
+    return Record(record.t, channels)
