@@ -122,7 +122,7 @@ def _find(function: Callable[..., Any], args: Any, kinds: Any, folder: Path) -> 
         found = _load(path)
         if found is None:
             found = _make(function, args, path.name)
-            with contextlib.suppress(*UNKEPT):  # this process has it
+            with contextlib.suppress(*UNKEPT, jax.errors.JaxRuntimeError):  # this process has it
                 write(path, found.call, found.frame)
     except (_Foreign, *UNKEPT):
         return None
