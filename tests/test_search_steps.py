@@ -157,6 +157,26 @@ def test_close_candidates_are_finished_before_one_is_chosen():
     assert not search.bench.asked
 
 
+@pytest.mark.parametrize(("behind", "times"), [(40.0, 1), (2.0, 2)])
+def test_what_cannot_replace_a_simpler_rival_is_fitted_roughly(monkeypatch, behind, times):
+    before = Model(frozenset(), cost=1000.0, tied=False)
+    rival = Model(frozenset({"preload"}), cost=100.0, tied=False, free=("backlash", "T0"))
+    free = ("backlash", "G", "phase")
+    rough = Model(frozenset({"gravity"}), cost=100.0 + 0.5 * (behind - 10.0), tied=False, free=free)
+    search = Search(Bench(rough, replace(rough, cost=80.0)))
+    found = search.add(before, SimpleNamespace(name="gravity", effect=Gravity(G=20.0)), rival)
+    assert len(search.bench.asked) == times
+    assert found.cost == (rough.cost if times == 1 else 80.0)
+
+
+@pytest.mark.parametrize(("fall", "misfit", "imitated"), [(50.0, 1.01, True), (150.0, 1.01, False), (50.0, 1.2, False)])
+def test_what_a_blurred_sensor_explains_as_well_is_no_evidence(monkeypatch, fall, misfit, imitated):
+    monkeypatch.setattr("jaxbacklash.criticism.search.blurred", lambda bench, trial: 100.0)
+    before = Model(frozenset({"preload"}), cost=1000.0, misfit=misfit)
+    after = Model(frozenset({"gravity", "preload"}), cost=1000.0 - 0.5 * fall)
+    assert Search(Bench()).imitated(before, after) == imitated
+
+
 class Law(SimpleNamespace):
     """A law by what it contains."""
 

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicHermiteSpline
 
 import jaxbacklash as jb
 from jaxbacklash.criticism.along_motion import motion, own_torques
 from jaxbacklash.criticism.evidence import demanded
 from jaxbacklash.criticism.search import GLIMPSED
-from jaxbacklash.criticism.under_noise import own_rest, promises
+from jaxbacklash.criticism.under_noise import blurred, own_rest, promises
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.records import Record
@@ -55,12 +56,17 @@ def test_a_joint_without_it_promises_nothing(times):
     assert all(fall < GLIMPSED * demanded(bench) for fall, _ in promised)
 
 
-def glimpses(record, rig, delay):
-    """Evidence of the quick look for a flexible link beside a fitted delay, as it is and less what the look itself leaves."""
+def delayed(record, rig, delay):
+    """A workbench, and the joint with a delay fitted to all of the record in one piece."""
     base, free, _ = base_system(record, "joint", rig.inertia)
     bench = Workbench(record, base, free, 0.2)
     loose = bench.fit({"sensor_delay": jb.SensorDelay(delay)}, patience=60)
-    tied = bench.fit(bench.effects(loose), loose, tied=True, patience=60)
+    return bench, bench.fit(bench.effects(loose), loose, tied=True, patience=60)
+
+
+def glimpses(record, rig, delay):
+    """Evidence of the quick look for a flexible link beside a fitted delay, as it is and less what the look itself leaves."""
+    bench, tied = delayed(record, rig, delay)
     guesses = bench.laws["flexible_link"].guesses(tied.system)
     return [bench.quick.evidence(tied.system, tied.free, guesses, known) for known in (None, own_rest(bench, tied))]
 
@@ -80,6 +86,19 @@ def test_a_delay_hides_no_flexible_link(kind):
     late = round(3e-3 / record.dt)
     record = Record(record.t[:-late], {"x": record.channels["x"][late:], "z": record.channels["z"][:-late]})
     assert min(glimpses(record, rig, 3e-3)) > 25.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("line", [False, True])
+def test_a_delay_that_is_read_along_a_line_between_samples_blurs(line):
+    record, rig, _, truth = hidden(None, "stepped", 2)
+    t, z, speed = record.t[::2], truth["z"][::2], (truth["v"] - truth["dx"])[::2]
+    late = np.maximum(t - 1.5 * (t[1] - t[0]), 0.0)
+    shown = np.interp(late, t, z) if line else CubicHermiteSpline(t, z, speed)(late)
+    shown = shown + NOISE * np.random.default_rng(3).standard_normal(t.size)
+    bench, tied = delayed(Record(t, {"x": record.channels["x"][::2], "z": shown}), rig, 1.5 * (t[1] - t[0]))
+    taken = blurred(bench, tied)
+    assert taken > 50.0 if line else taken < 8.0
 
 
 @pytest.mark.parametrize("law", [jb.FlexibleLink(**LINK), jb.Gravity(-20.0), jb.CubicStiffness(1e6)])

@@ -15,7 +15,7 @@ from .evidence import AS_WELL, NOISE_FLOOR, UNEXPLAINED, demanded, excess, expla
 from .memories import families, may_replace, members
 from .tried import LOOSER, WHOLE, Tried
 from .tuning import apart
-from .under_noise import own_rest, promises
+from .under_noise import blurred, own_rest, promises
 from .workbench import Trial, Workbench, adequate, strengths
 
 MOST_EFFECTS = 5
@@ -167,7 +167,18 @@ class Search(Tried):
                     effects = {**self.bench.effects(trial), name: effect}
                     fitted = self.bench.fit(effects, trial, tied=True, followed=True, patience=WHOLE)
                     found.append((name, self._keep(self.retied(fitted))))
-        return min(found, key=lambda one: one[1].criterion, default=None)
+        best = min(found, key=lambda one: one[1].criterion, default=None)
+        return None if best is None or self.imitated(trial, best[1]) else best
+
+    def imitated(self, before: Trial, after: Trial) -> bool:
+        """Whether a sensor that averages over a short time explains as much as an addition to a model that leaves little."""
+        if not (before.tied and after.tied and explained(before)):
+            return False
+        return 2.0 * (before.cost - after.cost) < blurred(self.bench, before) + demanded(self.bench)
+
+    def delayed(self, trial: Trial) -> bool:
+        """Whether a model's measured channel lags: how it was read between two samples is not known."""
+        return any(self.bench.laws[n].lag is not AbstractEffect.lag for n in trial.names)
 
     def runs_through(self, trial: Trial) -> bool:
         """Whether a model of a link that is not seen was judged by one run through the record, as it has to stay."""
@@ -305,6 +316,8 @@ class Search(Tried):
                 break
             name = self.best(current, tried, least)
             if evidence[name] < demanded(self.bench) or self.nibbles(current, tried[name], least):
+                break
+            if self.delayed(current) and self.imitated(current, tried[name]):
                 break
             relieved = self.relieved(current, tried[name])
             if current.cost - relieved.cost > LOOSER:

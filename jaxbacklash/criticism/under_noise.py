@@ -25,6 +25,8 @@ FURTHER, BENT = 4.0, 0.25
 """A third such part, at which the answer is foretold, and how far off it may be."""
 STEPS = 3
 """Steps that the fit gets to answer with, the first where it had ended."""
+BLUR = 0.3
+"""Size of a blur of the sensor that is tried, in units of the noise."""
 WEAKEST, STRONGEST = 0.05, 3.0
 """Sizes, as multiples of the guess, within which the promise of a straight line is believed."""
 
@@ -57,8 +59,7 @@ def promises(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> list[
         if not once < 0.0:
             continue  # less than half of that share is best, if any
         twice = answer(2.0 * SHARE * torque)[0] - still
-        # The parabola through three points: its slope at no torque, its curvature.
-        slope, curvature = (2.0 * once - 0.5 * twice) / SHARE, (twice - 2.0 * once) / SHARE**2
+        slope, curvature = parabola(once, twice, SHARE)
         if not (np.isfinite(curvature) and curvature > 0.0 and slope < 0.0):
             continue
         fall = slope**2 / curvature
@@ -69,6 +70,36 @@ def promises(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> list[
         if abs(answer(FURTHER * SHARE * torque)[0] - still - further) < BENT * abs(further):
             found.append((fall, guess.scaled(float(np.clip(-slope / curvature, WEAKEST, STRONGEST)))))
     return sorted(found, key=lambda promise: -promise[0])
+
+
+def blurred(bench: Workbench, trial: Trial) -> float:
+    r"""What a sensor that averages over a short time would take off the sum of squares beside a tied trial, at most.
+
+    An average over a time :math:`w` shows :math:`z + \ddot z w^2/24`, and so does a delay that ends between two samples and is
+    read along a straight line, with :math:`f(1-f)\Delta t^2/2`. What explains no more than that speaks of the sensor alone.
+    """
+    problem, unknowns = as_it_ended(bench, trial)
+    measured = np.asarray(bench.windows.measured)
+
+    def answer(shift: np.ndarray) -> tuple[float, Prediction]:
+        read = eqx.tree_at(lambda p: p.windows.measured, problem, measured + shift)
+        stats = minimise(read, unknowns, Levenberg(atol=1e-4, damping=1e-9, limit=STEPS, costing=True)).stats
+        return float(stats["cost"]), stats["predicted"]
+
+    still, predicted = answer(np.zeros(measured.shape))
+    moved = np.asarray(predicted.motion)
+    bend = np.gradient(np.gradient(moved, axis=1), axis=1) * (np.asarray(bench.windows.weight) > 0.0)
+    size = float(np.sqrt(np.mean(bend**2)))
+    if not size > 0.0:
+        return 0.0
+    bend *= BLUR * bench.layout.noise[0] / size
+    slope, curvature = parabola(answer(-bend)[0] - still, answer(-2.0 * bend)[0] - still, 1.0)
+    return slope**2 / curvature if np.isfinite(curvature) and curvature > 0.0 else 0.0
+
+
+def parabola(once: float, twice: float, share: float) -> tuple[float, float]:
+    """Slope at no share, and curvature, of the parabola through nothing, ``once`` at a share, ``twice`` at twice of it."""
+    return (2.0 * once - 0.5 * twice) / share, (twice - 2.0 * once) / share**2
 
 
 def own_rest(bench: Workbench, trial: Trial) -> np.ndarray:
