@@ -230,7 +230,7 @@ def tiny() -> None:
 
     from jaxbacklash.program import start
 
-    start()
+    start(brief=True)
     with tempfile.TemporaryDirectory() as folder:
         columns: dict[str, list[dict[str, Any]] | None] = {}
         for method, numbers in (("sindy", (0, 21)), ("weak", (0, 21)), ("refine", (21,))):

@@ -143,7 +143,7 @@ def main() -> None:
     parser.add_argument("--tiny", action="store_true")
     parser.add_argument("--out", type=Path, default=None)
     options = parser.parse_args()
-    start()
+    start(brief=options.tiny)
     everything: dict[str, Any] = {}
     numbers = options.only if options.only is not None else range(len(SETS))
     for noise in options.noise[:1] if options.tiny else options.noise:

@@ -213,7 +213,7 @@ def main() -> None:
     given = parser.parse_args()
     if given.memory:
         return report_memory(given.memory)
-    jb.start(cache=False)
+    jb.start(cache=False, brief=given.tiny)
     against_peers(make_record(6.0 if given.tiny else 30.0), 2 if given.tiny else 9)
     by_length(LENGTHS[:1] if given.tiny else LENGTHS, 1 if given.tiny else 3)
     with tempfile.TemporaryDirectory() as folder:

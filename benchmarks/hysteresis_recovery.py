@@ -54,7 +54,7 @@ def main() -> None:
     parser.add_argument("--tiny", action="store_true")
     parser.add_argument("--out", type=Path, default=None)
     options = parser.parse_args()
-    start()
+    start(brief=options.tiny)
     rows: list[dict[str, Any]] = []
     for number in [0] if options.tiny else options.only or range(RECORDS):
         case = make_record(options.seed, number, 8.0 if options.tiny else options.duration)

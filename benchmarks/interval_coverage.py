@@ -216,7 +216,7 @@ def main() -> None:
     parser.add_argument("--tiny", action="store_true", help="records of 4 s and six seeds")
     parser.add_argument("--seeds", type=int, default=200, help="measurements of each record")
     options = parser.parse_args()
-    jb.start()
+    jb.start(brief=options.tiny)
     seeds = range(6 if options.tiny else options.seeds)
     print("held: intervals that hold the truth; CRB: Cramer-Rao bound, x unknown in the least space that holds it;")
     print("CRB fit's: in the space the fit uses; x known: bound with x exact; rms: of estimate - truth; SI units")

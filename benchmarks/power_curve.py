@@ -209,7 +209,7 @@ def main() -> None:
     options = parser.parse_args()
     from jaxbacklash.program import start
 
-    start()
+    start(brief=options.tiny)
     if options.tiny:
         import tempfile
 

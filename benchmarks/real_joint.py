@@ -65,7 +65,7 @@ def main() -> None:
     words.add_argument("--tiny", action="store_true", help="the made-up damper, one starting point")
     words.add_argument("--effects", nargs="+", default=["coulomb_ground"], help="effects in the model")
     given = words.parse_args()
-    jb.start()
+    jb.start(brief=given.tiny)
     records = of_folder(given.folder) if given.folder and not given.tiny else made_up()
     tried = [name for name in records if name in TRIED] or list(records)[:2]
     begun = time.perf_counter()

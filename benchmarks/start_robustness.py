@@ -92,7 +92,7 @@ def main() -> None:
     parser.add_argument("--tiny", action="store_true", help="a record of 4 s and five starts")
     parser.add_argument("--starts", type=int, default=100, help="starts per record")
     options = parser.parse_args()
-    jb.start()
+    jb.start(brief=options.tiny)
     count = 5 if options.tiny else options.starts
     case = Case("base", seconds=4.0 if options.tiny else 20.0)
     print(f"own record: {case}; 1e-9 rad in its start grow by a factor of {growth(case):.2g}")

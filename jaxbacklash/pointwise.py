@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from .compiled import kept_jit
-from .mechanics import Drive, Instant
+from .mechanics import AbstractEffect, Drive, Instant
 from .system import System
 
 FEWEST = 1024
@@ -36,6 +36,13 @@ def along(system: System, t: Any, y: Any, dy: Any, x: Any, dx: Any, force: Any =
     return Pointwise(Instant(t, y, dy, x, dx, z, dz, deflection, contact, stiffness, inertia), torque, joint)
 
 
+def exerted(effect: AbstractEffect, now: Instant) -> np.ndarray:
+    """Torque of one law without internal states (N,) at what it sees, arrays (N,) or numbers [N m]."""
+    seen = (now.t, now.y, now.dy, now.x, now.dx, now.z, now.dz, now.deflection, now.contact, now.stiffness, now.inertia)
+    rows = tuple(padded(np.asarray(row, float)) for row in np.broadcast_arrays(*seen))
+    return np.asarray(_exerted(effect, rows))[: now.t.size]
+
+
 def padded(row: np.ndarray) -> np.ndarray:
     """The samples (N, ...), the last one repeated until there are as many as a program takes."""
     room = max(FEWEST, 1 << (row.shape[0] - 1).bit_length())
@@ -48,6 +55,11 @@ def torques(system: System, rows: Any) -> tuple[Instant, Any, Any]:
     state = (y, dy, *(jnp.zeros_like(y) for _ in system.state_names[2:]))
     now = system.instant(t, state, Drive(x, dx, force))
     return now, *system.torques(now, state)
+
+
+@kept_jit
+def _exerted(effect: AbstractEffect, rows: Any) -> Any:
+    return jnp.broadcast_to(effect.torque(Instant(*rows)), rows[0].shape)
 
 
 @kept_jit

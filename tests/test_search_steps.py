@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from jaxbacklash.criticism.search import Search, Step
-from jaxbacklash.criticism.tried import SLIGHT
+from jaxbacklash.criticism.tried import SHORT, SLIGHT
 from jaxbacklash.effects import Gravity
 
 
@@ -33,6 +33,7 @@ class Bench:
     def __init__(self, *answers: Model) -> None:
         self.answers, self.asked = list(answers), []
         self.laws = {name: SimpleNamespace(states=(), absorbs=(), slides=False) for name in ("gravity", "preload")}
+        self.outright = ()
 
     def effects(self, trial):
         return dict.fromkeys(trial.names, "as fitted")
@@ -61,6 +62,40 @@ def test_a_larger_model_that_fits_worse_begins_again_near_the_smaller_one(monkey
     candidate = SimpleNamespace(name="gravity", effect=Gravity(G=20.0))
     assert search.add(before, candidate).cost == min(costs)
     assert begun == pytest.approx([20.0, 20.0 * SLIGHT][: len(costs)])
+
+
+@pytest.mark.parametrize(("dry", "gain"), [(True, 2.0), (True, 100.0), (False, 2.0)])
+def test_what_promises_little_beside_dry_friction_begins_near_nothing(monkeypatch, dry, gain):
+    """There the whole of a foretold strength throws the trajectory far off; a clear promise is worth that."""
+    before, both = Model(frozenset({"preload"}), cost=100.0), frozenset({"preload", "gravity"})
+    search, begun = Search(Bench()), []
+    search.bench.laws["preload"].slides = dry
+
+    def fit(effects, *_, patience=25, **__):
+        begun.append((float(effects["gravity"].G), patience))
+        return Model(both, cost=95.0, misfit=0.99, free=("backlash", "gravity.G"))
+
+    monkeypatch.setattr(search.bench, "fit", fit)
+    search.add(before, SimpleNamespace(name="gravity", effect=Gravity(G=20.0), gain=gain))
+    assert begun == [(pytest.approx(20.0 * SLIGHT), SHORT) if dry and gain < 10.0 else (20.0, 25)]
+
+
+def test_of_those_that_promise_as_much_the_simplest_is_fitted_first():
+    search, fitted = Search(Bench()), []
+    current = Model(frozenset(), cost=1e5, misfit=10.0, tied=False)
+    laws = {"preload": (99.0, 3), "gravity": (95.0, 1), "drag": (80.0, 1)}
+    ranking = [
+        SimpleNamespace(name=name, gain=gain, predicted=1.0, parameters=count, effect=Gravity())
+        for name, (gain, count) in laws.items()
+    ]
+    found = {name: Model(frozenset({name}), cost=100.0, tied=False, misfit=2.0) for name in laws}
+    search.bench.laws["drag"] = search.bench.laws["gravity"]
+    search.may_help = lambda *_: True
+    search.rubs = lambda *_: False
+    search.memories = lambda *_: {}
+    search.add = lambda before, c, rival=None: fitted.append(c.name) or found[c.name]
+    assert search.attempts(current, ranking) == found
+    assert fitted == ["gravity", "preload", "drag"]
 
 
 def significant(monkeypatch, size):

@@ -7,7 +7,8 @@ import jaxbacklash as jb
 from jaxbacklash.excitation import Multisine
 from jaxbacklash.fitting import search as module
 from jaxbacklash.fitting.fit import prepare
-from jaxbacklash.fitting.search import search
+from jaxbacklash.fitting.levenberg import Minimum
+from jaxbacklash.fitting.search import freedom, search, tie_windows
 from jaxbacklash.fitting.setup import first_guess, make_problem
 from jaxbacklash.fitting.stretch import STRETCH, stretch
 from jaxbacklash.parameters import values
@@ -47,6 +48,27 @@ def test_the_stretch_lies_where_the_link_moves():
     assert np.all(np.diff(part.windows.t0[:STRETCH]) > 0)
     assert not np.any(part.windows.weight[STRETCH - 1 :])
     assert begin.starts.shape == (2, windows.count)
+
+
+@pytest.mark.parametrize(("off", "asked"), [(10.0, [20]), (1.5, [20, 40])])
+def test_a_sharply_tied_search_that_stays_far_off_is_given_up(monkeypatch, off, asked):
+    """Loose ties, and searches that nobody gives many steps, are not cut short."""
+    _, windows, problem = problem_of(record(duration=4.0))
+    guess, limits = first_guess(problem), []
+
+    def minimise(_, start, how):
+        limits.append(int(how.limit))
+        return Minimum(start, {"cost": 0.5 * off**2 * freedom(start, windows, tied=True), "steps": limits[-1]})
+
+    monkeypatch.setattr(module, "minimise", minimise)
+    _, solution, steps = tie_windows(problem, guess, (100.0,), limit=60)
+    assert limits == asked
+    assert steps == sum(asked)
+    assert ("given_up" in solution.stats) == (asked == [20])
+    limits.clear()
+    assert tie_windows(problem, guess, (1.0, 100.0), limit=60)[2] == 120
+    assert tie_windows(problem, guess, (100.0,), limit=25)[2] == 25
+    assert limits == [60, 60, 25]
 
 
 def test_the_same_minimum_with_and_without_it(monkeypatch):

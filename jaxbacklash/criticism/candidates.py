@@ -31,6 +31,11 @@ class Candidate:
     predicted: float
     moved: dict[str, float]
 
+    @property
+    def parameters(self) -> int:
+        """How many of its parameters are free."""
+        return sum(not spec.fixed for spec in specs(self.effect).values())
+
 
 def rank(bench: Workbench, trial: Trial, names: Iterable[str] | None = None) -> list[Candidate]:
     """All absent effects, the most telling first.

@@ -13,7 +13,7 @@ from ..mechanics import AbstractEffect
 from .candidates import Candidate, rank
 from .evidence import AS_WELL, NOISE_FLOOR, UNEXPLAINED, demanded, excess, explained, gain, measures_only, shapeless, significance
 from .memories import families, may_replace, members
-from .tried import LOOSER, WHOLE, Tried
+from .tried import LOOSER, SURE, WHOLE, Tried
 from .tuning import apart
 from .under_noise import blurred, own_rest, promises
 from .workbench import Trial, Workbench, adequate, strengths
@@ -35,8 +35,6 @@ GLIMPSED = 2.0
 """How many times what is demanded of an addition the quick look must show before such a law is tried beside what explains."""
 LIKELY, HALF = 2, 0.5
 """Guesses of such a law that are fitted at most, and share of a gain that is enough to promise where more may come of it."""
-SURE = 4.0
-"""A gain predicted to be so many times what is demanded is no accident, so a fit that does not show it has stuck."""
 
 
 @dataclass(frozen=True)
@@ -367,11 +365,13 @@ class Search(Tried):
         looked = bool(telling) and (telling[0].predicted > ADEQUATE or self.rubs(current))
         if looked:
             tried = self.memories(current, ranking)
-        for c in telling:
+        most = max((c.gain for c in telling), default=0.0)
+        # Of those that promise about as much the simplest goes first: a richer one then need not be fitted to the end.
+        for c in sorted(telling, key=lambda c: (c.gain < CLOSE * most, c.gain >= CLOSE * most and c.parameters)):
             enough = tried and min(t.misfit for t in tried.values()) < NOISE_FLOOR
             if enough and any(self.bench.laws[n].states and gain(current, t) > demanded(self.bench) for n, t in tried.items()):
                 break  # it was ahead of every static one before it was fitted
-            if c.gain < (CLOSE if enough else HOPEFUL) * telling[0].gain:
+            if c.gain < (CLOSE if enough else HOPEFUL) * most:
                 continue
             self.progress(f"trying {c.name}", 0.4)
             rival = min(tried.values(), key=lambda t: t.criterion) if enough else None

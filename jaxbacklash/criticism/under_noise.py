@@ -25,6 +25,8 @@ FURTHER, BENT = 4.0, 0.25
 """A third such part, at which the answer is foretold, and how far off it may be."""
 STEPS = 3
 """Steps that the fit gets to answer with, the first where it had ended."""
+LOST = 1e3
+"""How many times the cost of the trial an answer exceeds that has not followed."""
 BLUR = 0.3
 """Size of a blur of the sensor that is tried, in units of the noise."""
 WEAKEST, STRONGEST = 0.05, 3.0
@@ -56,6 +58,8 @@ def promises(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> list[
     for guess, torque in zip(guesses, own_torques(guesses, trial.system, along)):
         torque = np.interp(edges, along.t, torque)
         once = answer(SHARE * torque)[0] - still
+        if not once < LOST * still:
+            return []  # a trajectory with dry friction has not come to rest by then, whatever the torque
         if not once < 0.0:
             continue  # less than half of that share is best, if any
         twice = answer(2.0 * SHARE * torque)[0] - still

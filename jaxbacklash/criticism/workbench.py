@@ -239,10 +239,11 @@ class Workbench:
         # What a window may begin with by itself is a parameter: an internal state where windows are free, all where one is cut.
         starts = states * float(np.sum(self.ties - np.asarray(self.windows.tie))) if tied else (states - 2) * used
         penalty = len(free) * np.log(rows) + 2.0 * starts
+        done = int(solution.stats["steps"]) < patience and "given_up" not in solution.stats
         return Trial(
             fitted, names, free, solution.value, cost, float(np.sqrt(2.0 * cost / count)),
             np.asarray(solution.stats["schur"]), np.asarray(solution.stats["pull"]),
-            np.sum(problem.directions, axis=0), tied, int(solution.stats["steps"]) < patience, float(penalty),
+            np.sum(problem.directions, axis=0), tied, done, float(penalty),
             _correlation(self.windows, np.asarray(solution.stats["predicted"].motion)),
         )  # fmt: skip
 

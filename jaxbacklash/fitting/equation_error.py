@@ -13,11 +13,11 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 import equinox as eqx
-import jax.numpy as jnp
 import numpy as np
 from scipy import optimize
 
 from ..mechanics import AbstractEffect, Instant
+from ..pointwise import exerted
 from ..records import Record
 from ..signals import Bump, choose_intervals, fit_spline
 
@@ -170,11 +170,9 @@ class _WeakForm:
         dy, dx = self._smooth_speeds()
         deflection = _dead_zone(self.z, half_play)
         contact = (np.abs(self.z) > half_play).astype(float)
-        one = jnp.ones(())
-        now = Instant(
-            self._record.t, self._y, dy, self._x, dx, self.z, dy - dx, deflection, contact, stiffness * one, one
-        )
-        return np.asarray(effect.torque(now)) * np.ones_like(self.z)
+        numbers = np.asarray(stiffness), np.ones(())
+        now = Instant(self._record.t, self._y, dy, self._x, dx, self.z, dy - dx, deflection, contact, *numbers)
+        return exerted(effect, now)
 
     def _smooth_speeds(self) -> tuple[np.ndarray, np.ndarray]:
         if self._speeds is None:

@@ -26,6 +26,8 @@ TIES = ((100.0,), (1.0, 100.0), (1.0,))
 trajectory and a sharp one to make it one; the loose one alone."""
 
 
+SOON = 20
+"""Steps after which a search with sharply tied windows is given up if it is still `LOOSE` off: what will join has come near."""
 NEAR = 0.1
 """How near to the minimum a search comes that is not the last, as `Levenberg.atol`."""
 
@@ -178,13 +180,24 @@ def tie_windows(
     problem: Problem, unknowns: Unknowns, ties: Sequence[float], *, limit: int = 60
 ) -> tuple[Problem, Minimum, int]:
     """Tie the windows as sharply as ``ties`` say, one after the other: the tied problem, its solution, the steps taken."""
-    # Free windows end close to the tied ones: a damped step would only fight the ties, which are stiff.
-    solver, steps = Levenberg(damping=1e-9, limit=limit), 0
+    steps = 0
     for tightness in ties:
         problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(tightness))
-        solution = minimise(problem, unknowns, solver)
+        solution = _tied(problem, unknowns, SOON if len(ties) == 1 and limit > 2 * SOON else limit, limit)
         unknowns, steps = solution.value, steps + int(solution.stats["steps"])
     return problem, solution, steps
+
+
+def _tied(problem: Problem, unknowns: Unknowns, soon: int, limit: int) -> Minimum:
+    """A search with tied windows that goes on after ``soon`` steps only if it has come near by then."""
+    # Free windows end close to the tied ones: a damped step would only fight the ties, which are stiff.
+    first = minimise(problem, unknowns, Levenberg(damping=1e-9, limit=soon))
+    if soon == limit or int(first.stats["steps"]) < soon:
+        return first
+    if not float(first.stats["cost"]) < 0.5 * LOOSE**2 * freedom(first.value, problem.windows, tied=True):
+        return Minimum(first.value, {**first.stats, "given_up": True})
+    rest = minimise(problem, first.value, Levenberg(damping=1e-9, limit=limit - soon))
+    return Minimum(rest.value, {**rest.stats, "steps": rest.stats["steps"] + soon})
 
 
 def freedom(unknowns: Unknowns, windows: Windows, *, tied: bool = False) -> float:
