@@ -5,11 +5,13 @@ import pytest
 from scipy.interpolate import CubicHermiteSpline
 
 import jaxbacklash as jb
+from jaxbacklash.criticism import under_noise
 from jaxbacklash.criticism.along_motion import motion, own_torques
 from jaxbacklash.criticism.evidence import demanded
 from jaxbacklash.criticism.search import GLIMPSED
 from jaxbacklash.criticism.under_noise import blurred, own_rest, promises
 from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.fitting.levenberg import Levenberg, Minimum
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.records import Record
 from tests.hidden import NOISE, hidden
@@ -54,6 +56,23 @@ def test_a_joint_without_it_promises_nothing(times):
     bench, alone = trajectory(noisier(record, times, 6), rig)
     promised = promises(bench, alone, bench.laws["flexible_link"])
     assert all(fall < GLIMPSED * demanded(bench) for fall, _ in promised)
+
+
+def test_a_trajectory_that_does_not_follow_promises_nothing(monkeypatch):
+    """As dry friction may have it: one answer tells, and no further guess is tried."""
+    record, rig, _, _ = hidden(None, "chirp", 5, 4.0)
+    bench, alone = trajectory(record, rig)
+    costs = []
+
+    def minimise(problem, start, how):
+        found = real(problem, start, Levenberg(limit=1))
+        costs.append(float(found.stats["cost"]) * (1e4 if costs else 1.0))
+        return Minimum(found.value, {**found.stats, "cost": costs[-1]})
+
+    real = under_noise.minimise
+    monkeypatch.setattr(under_noise, "minimise", minimise)
+    assert promises(bench, alone, bench.laws["flexible_link"]) == []
+    assert len(costs) == 2
 
 
 def delayed(record, rig, delay):
