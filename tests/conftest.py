@@ -9,8 +9,8 @@ import pytest
 
 import jaxbacklash as jb
 
-# Where several workers share the machine, each keeps to one core.
-jb.start(devices=1 if "PYTEST_XDIST_WORKER" in os.environ else None)
+# Where several workers share the machine, each keeps to one core; tests compile more than they compute, like most commands.
+jb.start(devices=1 if "PYTEST_XDIST_WORKER" in os.environ else None, brief=True)
 jax.config.update("jax_platforms", "cpu")
 
 SHARED = Path(__file__).resolve().parents[2] / "shared"
