@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from jaxbacklash.criticism.search import Search, Step
-from jaxbacklash.criticism.tried import SHORT, SLIGHT
+from jaxbacklash.criticism.tried import SLIGHT
 from jaxbacklash.effects import Gravity
 
 
@@ -62,22 +62,6 @@ def test_a_larger_model_that_fits_worse_begins_again_near_the_smaller_one(monkey
     candidate = SimpleNamespace(name="gravity", effect=Gravity(G=20.0))
     assert search.add(before, candidate).cost == min(costs)
     assert begun == pytest.approx([20.0, 20.0 * SLIGHT][: len(costs)])
-
-
-@pytest.mark.parametrize(("dry", "gain"), [(True, 2.0), (True, 100.0), (False, 2.0)])
-def test_what_promises_little_beside_dry_friction_begins_near_nothing(monkeypatch, dry, gain):
-    """There the whole of a foretold strength throws the trajectory far off; a clear promise is worth that."""
-    before, both = Model(frozenset({"preload"}), cost=100.0), frozenset({"preload", "gravity"})
-    search, begun = Search(Bench()), []
-    search.bench.laws["preload"].slides = dry
-
-    def fit(effects, *_, patience=25, **__):
-        begun.append((float(effects["gravity"].G), patience))
-        return Model(both, cost=95.0, misfit=0.99, free=("backlash", "gravity.G"))
-
-    monkeypatch.setattr(search.bench, "fit", fit)
-    search.add(before, SimpleNamespace(name="gravity", effect=Gravity(G=20.0), gain=gain))
-    assert begun == [(pytest.approx(20.0 * SLIGHT), SHORT) if dry and gain < 10.0 else (20.0, 25)]
 
 
 def test_of_those_that_promise_as_much_the_simplest_is_fitted_first():

@@ -13,7 +13,7 @@ from ..mechanics import AbstractEffect
 from .candidates import Candidate, rank
 from .evidence import AS_WELL, NOISE_FLOOR, UNEXPLAINED, demanded, excess, explained, gain, measures_only, shapeless, significance
 from .memories import families, may_replace, members
-from .tried import LOOSER, SURE, WHOLE, Tried
+from .tried import LOOSER, WHOLE, Tried
 from .tuning import apart
 from .under_noise import blurred, own_rest, promises
 from .workbench import Trial, Workbench, adequate, strengths
@@ -35,6 +35,8 @@ GLIMPSED = 2.0
 """How many times what is demanded of an addition the quick look must show before such a law is tried beside what explains."""
 LIKELY, HALF = 2, 0.5
 """Guesses of such a law that are fitted at most, and share of a gain that is enough to promise where more may come of it."""
+SURE = 4.0
+"""A gain predicted to be so many times what is demanded is no accident, so a fit that does not show it has stuck."""
 
 
 @dataclass(frozen=True)

@@ -17,14 +17,12 @@ STUCK = 1.01
 """A tied fit that misses by so much more than its free windows has stuck, or their freedom hides what the model lacks."""
 SLIGHT = 0.03
 """Share of its predicted strength at which an effect begins where from the whole of it the fit has stuck."""
-SURE = 4.0
-"""A gain predicted to be so many times what is demanded is no accident, so a fit that does not show it has stuck."""
 ROUGH = 1.0
 """How much of half the sum of squares may be left to gain by a model that can hardly be chosen."""
 LOOSER = 1.0
 """A fit that comes out so much lower when it is given its turn again had stuck."""
-WHOLE, SHORT = 60, 10
-"""Linearisations allowed to a model that is kept, and to an addition that promises little beside dry friction."""
+WHOLE = 60
+"""Linearisations allowed to a model that is kept."""
 
 
 def follows(tied: Trial, free: Trial) -> bool:
@@ -103,15 +101,11 @@ class Tried:
                 behind = start.criterion - rival.criterion > 2.0 * demanded(self.bench) and start.cost < before.cost
                 if behind and len(start.free) > len(rival.free):
                     return self._keep(start)
-            slight = with_values(effect, {n: SLIGHT * values(effect)[n] for n in strengths(effect)})
-            beside = {**present, candidate.name: slight}
-            if before.tied and self.dry(before) and names > before.names and candidate.gain < SURE * demanded(self.bench):
-                # There is little to gain, and all of a strength that corners have foretold throws a trajectory far off.
-                return self._keep(self.bench.fit(beside, before, tied=True, patience=SHORT))
             trial = self._keep(self.joined(effects, before) if before.tied else self.bench.fit(effects, start))
             if trial.cost > before.cost and names > before.names:
                 # The larger model holds the smaller one: it has stuck on the way from the strength that was predicted.
-                self._keep(self.bench.fit(beside, before, tied=before.tied))
+                slight = with_values(effect, {n: SLIGHT * values(effect)[n] for n in strengths(effect)})
+                self._keep(self.bench.fit({**present, candidate.name: slight}, before, tied=before.tied))
         return self.known[key]
 
     def joined(self, effects: dict[str, AbstractEffect], before: Trial, patience: int = PATIENCE) -> Trial:

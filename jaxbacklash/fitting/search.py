@@ -26,8 +26,9 @@ TIES = ((100.0,), (1.0, 100.0), (1.0,))
 trajectory and a sharp one to make it one; the loose one alone."""
 
 
-SOON = 20
-"""Steps after which a search with sharply tied windows is given up if it is still `LOOSE` off: what will join has come near."""
+SOON, FAR_OFF = 20, 10.0
+"""Steps after which a search with sharply tied windows is given up if it misses by so many noises still: what will join has come
+near, or is on its way."""
 NEAR = 0.1
 """How near to the minimum a search comes that is not the last, as `Levenberg.atol`."""
 
@@ -194,7 +195,7 @@ def _tied(problem: Problem, unknowns: Unknowns, soon: int, limit: int) -> Minimu
     first = minimise(problem, unknowns, Levenberg(damping=1e-9, limit=soon))
     if soon == limit or int(first.stats["steps"]) < soon:
         return first
-    if not float(first.stats["cost"]) < 0.5 * LOOSE**2 * freedom(first.value, problem.windows, tied=True):
+    if not float(first.stats["cost"]) < 0.5 * FAR_OFF**2 * freedom(first.value, problem.windows, tied=True):
         return Minimum(first.value, {**first.stats, "given_up": True})
     rest = minimise(problem, first.value, Levenberg(damping=1e-9, limit=limit - soon))
     return Minimum(rest.value, {**rest.stats, "steps": rest.stats["steps"] + soon})
