@@ -367,13 +367,13 @@ class Search(Tried):
         looked = bool(telling) and (telling[0].predicted > ADEQUATE or self.rubs(current))
         if looked:
             tried = self.memories(current, ranking)
-        most = max((c.gain for c in telling), default=0.0)
         # Of those that promise about as much the simplest goes first: a richer one then need not be fitted to the end.
-        for c in sorted(telling, key=lambda c: (c.gain < CLOSE * most, c.gain >= CLOSE * most and c.parameters)):
+        level = sorted((c for c in telling if c.gain >= CLOSE * telling[0].gain), key=lambda c: c.parameters)
+        for c in (*level, *telling[len(level) :]):
             enough = tried and min(t.misfit for t in tried.values()) < NOISE_FLOOR
             if enough and any(self.bench.laws[n].states and gain(current, t) > demanded(self.bench) for n, t in tried.items()):
                 break  # it was ahead of every static one before it was fitted
-            if c.gain < (CLOSE if enough else HOPEFUL) * most:
+            if c.gain < (CLOSE if enough else HOPEFUL) * telling[0].gain:
                 continue
             self.progress(f"trying {c.name}", 0.4)
             rival = min(tried.values(), key=lambda t: t.criterion) if enough else None

@@ -26,7 +26,7 @@ FURTHER, BENT = 4.0, 0.25
 STEPS = 3
 """Steps that the fit gets to answer with, the first where it had ended."""
 LOST = 1e3
-"""How many times the cost of the trial an answer exceeds that has not followed."""
+"""How many times the cost of a trial with dry friction an answer exceeds that has not followed."""
 BLUR = 0.3
 """Size of a blur of the sensor that is tried, in units of the noise."""
 WEAKEST, STRONGEST = 0.05, 3.0
@@ -48,9 +48,7 @@ def promises(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> list[
     edges = np.asarray(windows.t0)[:, None] + float(windows.panel) * np.arange(applied.shape[1])
 
     def answer(torque: np.ndarray) -> tuple[float, Prediction]:
-        pushed = eqx.tree_at(lambda p: p.windows.force, problem, applied + torque)
-        stats = minimise(pushed, unknowns, Levenberg(atol=1e-4, damping=1e-9, limit=STEPS, costing=True)).stats
-        return float(stats["cost"]), stats["predicted"]
+        return answered(eqx.tree_at(lambda p: p.windows.force, problem, applied + torque), unknowns)
 
     still, predicted = answer(np.zeros(()))
     along = motion(model_record(bench, predicted))
@@ -58,8 +56,8 @@ def promises(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> list[
     for guess, torque in zip(guesses, own_torques(guesses, trial.system, along)):
         torque = np.interp(edges, along.t, torque)
         once = answer(SHARE * torque)[0] - still
-        if not once < LOST * still:
-            return []  # a trajectory with dry friction has not come to rest by then, whatever the torque
+        if problem.system.slides and not once < LOST * still:
+            return []  # dry friction does not let the trajectory follow, whatever the torque
         if not once < 0.0:
             continue  # less than half of that share is best, if any
         twice = answer(2.0 * SHARE * torque)[0] - still
@@ -86,9 +84,7 @@ def blurred(bench: Workbench, trial: Trial) -> float:
     measured = np.asarray(bench.windows.measured)
 
     def answer(shift: np.ndarray) -> tuple[float, Prediction]:
-        read = eqx.tree_at(lambda p: p.windows.measured, problem, measured + shift)
-        stats = minimise(read, unknowns, Levenberg(atol=1e-4, damping=1e-9, limit=STEPS, costing=True)).stats
-        return float(stats["cost"]), stats["predicted"]
+        return answered(eqx.tree_at(lambda p: p.windows.measured, problem, measured + shift), unknowns)
 
     still, predicted = answer(np.zeros(measured.shape))
     moved = np.asarray(predicted.motion)
@@ -99,6 +95,12 @@ def blurred(bench: Workbench, trial: Trial) -> float:
     bend *= BLUR * bench.layout.noise[0] / size
     slope, curvature = parabola(answer(-bend)[0] - still, answer(-2.0 * bend)[0] - still, 1.0)
     return slope**2 / curvature if np.isfinite(curvature) and curvature > 0.0 else 0.0
+
+
+def answered(problem: Problem, unknowns: Unknowns) -> tuple[float, Prediction]:
+    """Cost and trajectory of a fit that has few steps to answer a small change of its problem with."""
+    stats = minimise(problem, unknowns, Levenberg(atol=1e-4, damping=1e-9, limit=STEPS, costing=True)).stats
+    return float(stats["cost"]), stats["predicted"]
 
 
 def parabola(once: float, twice: float, share: float) -> tuple[float, float]:

@@ -190,7 +190,7 @@ def tie_windows(
 
 
 def _tied(problem: Problem, unknowns: Unknowns, soon: int, limit: int) -> Minimum:
-    """A search with tied windows that goes on after ``soon`` steps only if it has come near by then."""
+    """A search with tied windows that is ``given_up``, as its stats then say, if after ``soon`` steps it is far off still."""
     # Free windows end close to the tied ones: a damped step would only fight the ties, which are stiff.
     first = minimise(problem, unknowns, Levenberg(damping=1e-9, limit=soon))
     if soon == limit or int(first.stats["steps"]) < soon:
