@@ -5,7 +5,7 @@ import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.criticism import missing_torque_of, smoother
-from jaxbacklash.criticism.chain import factorise, solve_chain, variances
+from jaxbacklash.criticism.chain import backward, factorise, forward, variances
 from jaxbacklash.criticism.tables import smoothness
 from jaxbacklash.effects.learned import basis, hats
 
@@ -33,10 +33,16 @@ def test_chain_is_the_dense_matrix():
             after = slice((w + 1) * size, (w + 2) * size)
             dense[after, own], dense[own, after] = below[w], below[w].T
     right = rng.standard_normal((windows, size, 2))
-    factor = factorise(diagonal, below)
+    # What stands beyond the windows used changes nothing.
+    beyond = [np.concatenate([part, rng.standard_normal((2, *part.shape[1:]))]) for part in (diagonal, below, right)]
+    factor = factorise(beyond[0], beyond[1], windows)
+    half = forward(factor, beyond[2])
+    products = np.einsum("wbi,wbj->ij", half, half)
+    solution = np.linalg.solve(dense, right.reshape(-1, 2))
     assert float(factor.log_determinant) == pytest.approx(np.linalg.slogdet(dense)[1])
-    assert np.allclose(solve_chain(factor, right).reshape(-1, 2), np.linalg.solve(dense, right.reshape(-1, 2)))
-    assert np.allclose(variances(factor).ravel(), np.diag(np.linalg.inv(dense)))
+    assert np.allclose(backward(factor, half)[:windows].reshape(-1, 2), solution)
+    assert np.allclose(products, right.reshape(-1, 2).T @ solution)
+    assert np.allclose(variances(factor)[:windows].ravel(), np.diag(np.linalg.inv(dense)))
 
 
 def test_gravity_shows_in_time(gravity):

@@ -16,7 +16,8 @@ import jax.scipy.linalg as jsl
 
 from ..compiled import kept_jit
 from ..fitting.shooting import Blocks
-from .smoother import Point, Smoother, linearise, prior, solve, torque_places
+from .chain import Factor, forward
+from .smoother import Point, Smoother, bordered, eliminate, prior, torque_places
 
 Array = Any
 
@@ -32,28 +33,45 @@ class Explained(eqx.Module):
     torque: Array
 
 
-@kept_jit
-def prepare_linear(s: Smoother, at: Point) -> tuple[Blocks, Any]:
-    """The chain at a point and the remainder's prior (first differences), for many calls of `explain`."""
-    diagonal, below, slope, rough = prior(s, at)
-    return linearise(s, at), (diagonal[1], below[1], slope[1], rough[1])
+class Prepared(eqx.Module):
+    """The chain under each of G priors of the remainder (first differences of a torque, with ``log_precisions`` (G,)), for many
+    calls of `explain`: the prior itself, and the chain's ``factor`` and ``halfway``, as in `Eliminated`, with G in front."""
+
+    linear: Blocks
+    diagonal: Array
+    below: Array
+    slope: Array
+    rough: Array
+    log_precisions: Array
+    factor: Factor
+    halfway: Array
 
 
 @kept_jit
-def explain(
-    s: Smoother, at: Point, linear: Blocks, remainder: Any, phi: Array, penalty: Array, log_precisions: Array
-) -> Explained:
-    """Estimate a table under the likeliest of G priors of the remainder.
+def prepare(s: Smoother, at: Point, linear: Blocks, log_precisions: Array) -> Prepared:
+    """What every table needs, from the chain at a point as `finish` gives it."""
+    diagonal, below, slope, rough = (part[1] for part in prior(s, at))
+
+    def under(log_precision: Array) -> tuple[Factor, Array]:
+        precision = jnp.exp(log_precision)
+        done = eliminate(linear, precision * diagonal, precision * below, precision * slope, s.problem.windows.used)
+        return done.factor, done.halfway
+
+    return Prepared(linear, diagonal, below, slope, rough, log_precisions, *jax.lax.map(under, log_precisions))
+
+
+@kept_jit
+def explain(s: Smoother, at: Point, prepared: Prepared, phi: Array, penalty: Array) -> Explained:
+    """Estimate a table under the likeliest of the priors of the remainder.
 
     Parameters
     ----------
     s, at : the smoother and the point of its linearisation
-    linear, remainder : from `prepare_linear`
+    prepared : the chain there, from `prepare`
     phi : (W, K, R) the table's basis at the torque's values
     penalty : (R, R) precision of the table in the smoother's unit, positive definite
-    log_precisions : (G,) precisions of the remainder's differences to choose from
     """
-    diagonal, below, slope, rough = remainder
+    linear, diagonal, below = prepared.linear, prepared.diagonal, prepared.below
     q, width = at.unknowns.theta.shape[0], phi.shape[2]
     place = torque_places(s, at)
     full = jnp.zeros((*linear.slope.shape, width)).at[:, place].set(phi)
@@ -62,21 +80,21 @@ def explain(
     leads = jnp.concatenate([jnp.zeros_like(leads[:1]), leads[:-1]])
     pulled = jnp.einsum("wij,wjr->wir", diagonal, full) + leads + jnp.einsum("wji,wjr->wir", below, follows)
     gram = jnp.einsum("wir,wis->rs", full, pulled)
-    against = jnp.einsum("wir,wi->r", full, slope)
+    against = jnp.einsum("wir,wi->r", full, prepared.slope)
     rows = jnp.sum(s.present) * s.nodes
 
-    def one(log_precision: Array) -> tuple[Array, Array, Array, Array]:
+    def one(under: Any) -> tuple[Array, Array, Array, Array]:
+        log_precision, factor, known = under
         precision = jnp.exp(log_precision)
-        border = jnp.concatenate([linear.border, -precision * pulled], axis=2)
+        new = forward(factor, -precision * pulled)
+        halfway = jnp.concatenate([known[:, :, :-1], new, known[:, :, -1:]], axis=2)
         corner = jsl.block_diag(linear.corner, precision * gram + penalty)
-        right = jnp.concatenate([linear.slope_theta, -precision * against])
-        wide = Blocks(linear.diagonal, linear.below, border, corner, linear.slope, right, linear.cost)
-        done = solve(wide, precision * diagonal, precision * below, precision * slope)
-        least = linear.cost + 0.5 * precision * rough - done.promise
+        done = bordered(factor, halfway, corner, jnp.concatenate([linear.slope_theta, -precision * against]))
+        least = linear.cost + 0.5 * precision * prepared.rough - done.promise
         told = 0.5 * rows * log_precision - 0.5 * done.log_determinant - least
         return told, done.theta, done.schur, done.local[:, place]
 
-    told, step, schur, moved = jax.lax.map(one, log_precisions)
+    told, step, schur, moved = jax.lax.map(one, (prepared.log_precisions, prepared.factor, prepared.halfway))
     told = jnp.where(jnp.isfinite(told), told, -jnp.inf) + 0.5 * jnp.linalg.slogdet(penalty)[1]
     best = jnp.argmax(told)
     covariance = jsl.cho_solve((schur[best], True), jnp.eye(q + width))[q:, q:]

@@ -22,7 +22,7 @@ from ..errors import NoAnswer
 from ..fitting import Fit
 from ..fitting.fit import SCORE_WINDOW, prepare
 from ..fitting.setup import first_guess, free_names, make_problem
-from ..fitting.shooting import Problem, Trajectory, Unknowns
+from ..fitting.shooting import Blocks, Problem, Trajectory, Unknowns
 from ..parameters import unit_text, values, with_values
 from ..pointwise import along
 from ..precision import require_double_precision
@@ -43,12 +43,13 @@ EVIDENT = 6.0
 
 @dataclass(frozen=True)
 class Inside:
-    """The smoother where it ended: for further questions at the same point. ``precision`` is of the torque's differences of
-    order ``order``."""
+    """The smoother where it ended: for further questions at the same point. ``linear`` is the chain there, ``precision`` that of
+    the torque's differences of order ``order``."""
 
     smoother: Smoother
     point: Point
     path: Trajectory
+    linear: Blocks
     order: int
     precision: float
     free: tuple[str, ...]
@@ -161,7 +162,7 @@ def _smooth(
         jnp.asarray(float(hold)),
     )
     point, found, converged = _search(smoother, Point(start, jnp.zeros((w.count, nodes))))
-    spread, loose, path = finish(smoother, point, found.best[0].astype(int), found.best[1])
+    spread, loose, path, linear = finish(smoother, point, found.best[0].astype(int), found.best[1])
     names = list(values(system))
     vector = np.asarray(problem.base) + np.asarray(problem.directions) @ np.asarray(point.unknowns.theta)
     here = with_values(system, dict(zip(names, vector)))
@@ -176,7 +177,7 @@ def _smooth(
         moved={name: (before[name], after[name], float(error)) for name, error in zip(free, errors)},
         unit=unit,
         records=records,
-        inside=Inside(smoother, point, path, int(found.best[0]), float(np.exp(found.best[1])), free),
+        inside=Inside(smoother, point, path, linear, int(found.best[0]), float(np.exp(found.best[1])), free),
     )
 
 

@@ -32,7 +32,7 @@ from ..fitting.shooting import (
     trajectory,
 )
 from ..signals import DEGREE
-from .chain import Factor, factorise, solve_chain, variances
+from .chain import Factor, backward, factorise, forward, variances
 
 Array = Any
 RIDGE = 1e-10
@@ -150,33 +150,41 @@ def linearise(s: Smoother, at: Point) -> Blocks:
     return Blocks(diagonal, blocks.below, blocks.border, corner, slope, blocks.slope_theta + away, cost)
 
 
-class Solved(eqx.Module):
-    """A factored system: the chain's ``factor``; ``reach`` (W, B, q), the chain's answer to the border; the Cholesky factor
-    ``schur`` (q, q) of the information about the parameters; the step ``local`` (W, B), ``theta`` (q,); ``promise`` >= 0, what
-    the step takes off the cost; ``log_determinant`` of it all."""
+class Eliminated(eqx.Module):
+    """A system with the chain eliminated: the chain's ``factor``; ``halfway`` (W, B, q + 1), its lower factor's answer to the
+    border and to the chain's own slope; the Cholesky factor ``schur`` (q, q) of the information about the parameters; their step
+    ``theta`` (q,); ``promise`` >= 0, what the step takes off the cost; ``log_determinant`` of it all."""
 
     factor: Factor
-    reach: Array
+    halfway: Array
     schur: Array
-    local: Array
     theta: Array
     promise: Array
     log_determinant: Array
 
+    @property
+    def local(self) -> Array:
+        """The step of the windows' own unknowns, (W, B)."""
+        both = self.halfway @ jnp.append(self.theta, 1.0)
+        return -backward(self.factor, both[:, :, None])[:, :, 0]
 
-def solve(linear: Blocks, diagonal: Array, below: Array, slope: Array) -> Solved:
-    """Solve the chain with its border, a prior's ``diagonal``, ``below`` and ``slope`` added."""
-    factor = factorise(linear.diagonal + diagonal, linear.below + below)
-    pull = linear.slope + slope
-    both = solve_chain(factor, jnp.concatenate([linear.border, pull[:, :, None]], axis=2))
-    reach, alone = both[:, :, :-1], both[:, :, -1]
-    schur = _factored(linear.corner - jnp.einsum("wbi,wbj->ij", linear.border, reach), jnp.diagonal(linear.corner))
-    right = linear.slope_theta - jnp.einsum("wbi,wb->i", linear.border, alone)
+
+def eliminate(linear: Blocks, diagonal: Array, below: Array, slope: Array, used: Array) -> Eliminated:
+    """Eliminate the chain of the first ``used`` windows, a prior's ``diagonal``, ``below`` and ``slope`` added."""
+    factor = factorise(linear.diagonal + diagonal, linear.below + below, used)
+    halfway = forward(factor, jnp.concatenate([linear.border, (linear.slope + slope)[:, :, None]], axis=2))
+    return bordered(factor, halfway, linear.corner, linear.slope_theta)
+
+
+def bordered(factor: Factor, halfway: Array, corner: Array, slope_theta: Array) -> Eliminated:
+    """The parameters' part of a system, from the chain's answers to its border and slope."""
+    products = jnp.einsum("wbi,wbj->ij", halfway, halfway)
+    schur = _factored(corner - products[:-1, :-1], jnp.diagonal(corner))
+    right = slope_theta - products[:-1, -1]
     theta = -jsl.cho_solve((schur, True), right)
-    local = -alone - reach @ theta
-    promise = -0.5 * (jnp.sum(pull * local) + jnp.sum(linear.slope_theta * theta))
+    promise = 0.5 * (products[-1, -1] - right @ theta)
     log_determinant = factor.log_determinant + 2.0 * jnp.sum(jnp.log(jnp.diagonal(schur)))
-    return Solved(factor, reach, schur, local, theta, promise, log_determinant)
+    return Eliminated(factor, halfway, schur, theta, promise, log_determinant)
 
 
 def _factored(information: Array, alone: Array) -> Array:
@@ -231,13 +239,14 @@ def improve(s: Smoother, at: Point, orders: Array, log_precisions: Array) -> Imp
     diagonal, below, slope, rough = prior(s, at)
     rows = jnp.sum(s.present) * s.nodes
 
-    def solved(order: Array, precision: Array) -> Solved:
-        return solve(linear, precision * diagonal[order], precision * below[order], precision * slope[order])
+    def under(order: Array, precision: Array) -> Eliminated:
+        parts = (precision * part[order] for part in (diagonal, below, slope))
+        return eliminate(linear, *parts, s.problem.windows.used)
 
     def evidence(prior: Any) -> Array:
         order, log_precision = prior
         precision = jnp.exp(log_precision)
-        done = solved(order, precision)
+        done = under(order, precision)
         least = linear.cost + 0.5 * precision * rough[order] - done.promise
         return 0.5 * rows * log_precision - 0.5 * done.log_determinant - least
 
@@ -245,27 +254,30 @@ def improve(s: Smoother, at: Point, orders: Array, log_precisions: Array) -> Imp
     told = jnp.where(jnp.isfinite(told), told, -jnp.inf)
     without = evidence((jnp.asarray(0), jnp.log(NOTHING)))
     index = jnp.argmax(told)
-    done = solved(orders[index], jnp.exp(log_precisions[index]))
+    done = under(orders[index], jnp.exp(log_precisions[index]))
+    local = done.local
     u = at.unknowns
     n, m, nodes = u.starts.shape[0], s.problem.windows.intervals, s.nodes
     in_spline, in_torque = _places(n, m, nodes)
     theta = jnp.clip(u.theta + done.theta, s.problem.lower, s.problem.upper)
-    moved = Unknowns(theta, u.starts + done.local[:, :n].T, u.coefficients + done.local[:, in_spline[:m]])
+    moved = Unknowns(theta, u.starts + local[:, :n].T, u.coefficients + local[:, in_spline[:m]])
     best = jnp.stack([orders[index].astype(float), log_precisions[index]])
-    point = Point(moved, at.torque + done.local[:, in_torque[:nodes]])
+    point = Point(moved, at.torque + local[:, in_torque[:nodes]])
     return Improved(point, best, told, without, linear.cost, rough)
 
 
 @kept_jit
-def finish(s: Smoother, at: Point, order: Array, log_precision: Array) -> tuple[Array, Array, Trajectory]:
-    """Standard errors of the torque (W, K) in its unit and of the parameters (q,) in theirs, and the trajectories."""
+def finish(s: Smoother, at: Point, order: Array, log_precision: Array) -> tuple[Array, Array, Trajectory, Blocks]:
+    """Standard errors of the torque (W, K) in its unit and of the parameters (q,) in theirs, the trajectories, the chain."""
     linear = linearise(s, at)
     diagonal, below, slope, _ = prior(s, at)
     precision = jnp.exp(log_precision)
-    done = solve(linear, precision * diagonal[order], precision * below[order], precision * slope[order])
+    parts = (precision * part[order] for part in (diagonal, below, slope))
+    done = eliminate(linear, *parts, s.problem.windows.used)
     n, m, nodes = at.unknowns.starts.shape[0], s.problem.windows.intervals, s.nodes
     place = _places(n, m, nodes)[1][:nodes]
-    through = jnp.einsum("wbi,ij->wbj", done.reach[:, place], jnp.linalg.inv(done.schur).T)
+    reach = backward(done.factor, done.halfway[:, :, :-1])
+    through = jnp.einsum("wbi,ij->wbj", reach[:, place], jnp.linalg.inv(done.schur).T)
     spread = jnp.sqrt(variances(done.factor)[:, place] + jnp.sum(through**2, axis=2))
     loose = jnp.sqrt(jnp.diagonal(jsl.cho_solve((done.schur, True), jnp.eye(done.schur.shape[0]))))
     spline, torque = _locals(s, at)
@@ -275,4 +287,4 @@ def finish(s: Smoother, at: Point, order: Array, log_precision: Array) -> tuple[
         return trajectory(s.problem, at.unknowns.theta, start, c, t0, f + s.unit * (s.hats @ a))
 
     paths = jax.vmap(run, in_axes=(1, 0, 0, 0, 0))(at.unknowns.starts, spline, torque, w.t0, w.force)
-    return spread, (1.0 - s.held) * loose, paths
+    return spread, (1.0 - s.held) * loose, paths, linear

@@ -17,7 +17,7 @@ from ..effects.learned import LearnedTorque
 from ..parameters import values
 from ..side_by_side import side_by_side
 from ..system import System
-from .explain import explain, prepare_linear
+from .explain import explain, prepare
 from .latent import Latent
 from .shares import out_of_sample, plainest, size_of, slopes_along, torque_with, weights
 from .tables import at_times, basis_at_nodes, choose_knots, motions_of, smoothness, varies
@@ -86,7 +86,6 @@ def explain_torque(latent: Latent, sets: tuple[tuple[str, ...], ...] = SETS) -> 
     """
     inside = latent.inside
     smoother, point = inside.smoother, inside.point
-    linear, remainder = prepare_linear(smoother, point)
     home = np.asarray(point.unknowns.theta)
     slopes, motions = slopes_along(latent, home), motions_of(latent)
     unit = float(smoother.unit)
@@ -94,6 +93,7 @@ def explain_torque(latent: Latent, sets: tuple[tuple[str, ...], ...] = SETS) -> 
     log_precisions = np.log(inside.precision) + 2.0 * np.log(10.0) * np.array([0.0, 0.5, 1.2, 2.2])
     if inside.order != 1:
         log_precisions -= 2.0 * np.log(10.0) * 0.5
+    prepared = prepare(smoother, point, inside.linear, jnp.asarray(log_precisions))
 
     def attempt(names: tuple[str, ...]) -> _Tried:
         knots = tuple(choose_knots(latent, name, len(names)) for name in names)
@@ -102,9 +102,7 @@ def explain_torque(latent: Latent, sets: tuple[tuple[str, ...], ...] = SETS) -> 
         count = int(np.prod([len(row) for row in knots]))
         penalty[:count, :count] = smoothness(tuple(len(row) for row in knots)) / size**2
         padded = np.pad(phi, ((0, 0), (0, 0), (0, WIDTH - count)))
-        found = explain(
-            smoother, point, linear, remainder, jnp.asarray(padded), jnp.asarray(penalty), jnp.asarray(log_precisions)
-        )
+        found = explain(smoother, point, prepared, jnp.asarray(padded), jnp.asarray(penalty))
         at_nodes = at_times(latent, phi)
         covariance = unit**2 * np.asarray(found.covariance)[:count, :count]
         table, covariance, theta = plainest(
