@@ -240,8 +240,8 @@ def improve(s: Smoother, at: Point, orders: Array, log_precisions: Array) -> Imp
     rows = jnp.sum(s.present) * s.nodes
 
     def under(order: Array, precision: Array) -> Eliminated:
-        parts = (precision * part[order] for part in (diagonal, below, slope))
-        return eliminate(linear, *parts, s.problem.windows.used)
+        scaled = precision * diagonal[order], precision * below[order], precision * slope[order]
+        return eliminate(linear, *scaled, s.problem.windows.used)
 
     def evidence(prior: Any) -> Array:
         order, log_precision = prior
@@ -272,8 +272,8 @@ def finish(s: Smoother, at: Point, order: Array, log_precision: Array) -> tuple[
     linear = linearise(s, at)
     diagonal, below, slope, _ = prior(s, at)
     precision = jnp.exp(log_precision)
-    parts = (precision * part[order] for part in (diagonal, below, slope))
-    done = eliminate(linear, *parts, s.problem.windows.used)
+    scaled = precision * diagonal[order], precision * below[order], precision * slope[order]
+    done = eliminate(linear, *scaled, s.problem.windows.used)
     n, m, nodes = at.unknowns.starts.shape[0], s.problem.windows.intervals, s.nodes
     place = _places(n, m, nodes)[1][:nodes]
     reach = backward(done.factor, done.halfway[:, :, :-1])
