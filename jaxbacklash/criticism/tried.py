@@ -81,13 +81,10 @@ class Tried:
     def add(self, before: Trial, candidate: Candidate, rival: Trial | None = None) -> Trial:
         """The model with one more effect, in place of simpler laws it contains, fitted as the model before was: tied or free.
 
-        Beside a ``rival`` with fewer parameters its free windows are only fitted until it is clear that it does not replace that;
-        from the rival's law it begins if it contains that.
+        Beside a ``rival`` with fewer parameters its free windows are only fitted until it is clear that it does not replace that.
         """
-        start, effect = before, candidate.effect
-        if rival is not None and before.names < rival.names and rival.names - before.names <= set(type(effect).absorbs):
-            start, effect = rival, with_values(effect, dict.fromkeys(strengths(effect), 0.0))
-        present = self.bench.effects(start)
+        present = self.bench.effects(before)
+        effect = candidate.effect
         for name in type(effect).absorbs:
             if name in present:
                 simpler = values(present.pop(name))
@@ -97,8 +94,9 @@ class Tried:
         key = (names, before.tied or self.bench.grips(names))
         if key not in self.known:
             effects = {**present, candidate.name: effect}
+            start = before
             if rival is not None and not key[1]:
-                start = self.bench.fit(effects, start, near=ROUGH)
+                start = self.bench.fit(effects, before, near=ROUGH)
                 # What is left to gain is less than half of that lead.
                 behind = start.criterion - rival.criterion > 2.0 * demanded(self.bench) and start.cost < before.cost
                 if behind and len(start.free) > len(rival.free):

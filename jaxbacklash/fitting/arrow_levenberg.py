@@ -22,9 +22,8 @@ POOR, FAIR = 0.1, 0.5
 """Share of what it promised that a step must keep for the damping to stay, and to come down."""
 LEAST = 1e-4
 """Damping after a step is turned down, at least: less than that hardly changes a step."""
-STALLED, SETTLED, WORTH = 12, 6, 20.0
-"""A search ends that over so many steps has gained less than so many times what may be left to gain: the fewer steps suffice
-where its last gain was less than that already."""
+STALLED, WORTH = 12, 20.0
+"""A search ends that over so many steps has gained less than so many times what may be left to gain."""
 
 
 class ArrowState(eqx.Module):
@@ -107,8 +106,7 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         # Where dry friction makes the cost jagged, a little is promised for ever and next to nothing kept.
         small = small | ((state.fell < least) & (state.gain < PROMISED * least))
         # A promise under heavy damping says little; wait until the damping has come down or nothing helps any more.
-        idle = jnp.where(state.fell < WORTH * least, SETTLED, STALLED)
-        stalled = (state.steps - state.mark[1] >= idle) | (state.damping > 1e11)
+        stalled = (state.steps - state.mark[1] >= STALLED) | (state.damping > 1e11)
         done = (small & (state.damping < 1.0)) | stalled | (state.steps >= self.limit)
         return done & (state.steps > 0), optx.RESULTS.successful
 
