@@ -9,7 +9,7 @@ from pathlib import Path
 from ..criticism import refine
 from ..records import Record, read_record
 from .common import out_folder, progress
-from .refine import Looks, deliver
+from .refine import deliver
 
 
 def shipped() -> tuple[Record, Record, float]:
@@ -25,11 +25,11 @@ def run(*, out: Path, as_json: bool) -> None:
     folder = out_folder(out)
     assert folder is not None
     record, heldout, inertia = shipped()
-    with progress(as_json) as tell, Looks() as looks:
+    with progress(as_json) as tell:
         if not as_json:
             print("A link behind a loose joint, its base shaken; one physical effect is hidden in the record. The base model")
             print("is backlash, stiffness and damping. What else does the record need? This takes about a minute.\n", flush=True)
-        found = refine(record, heldout=heldout, inertia=inertia, progress=tell, begun=looks)
-        deliver(found, folder, as_json, tell, looks=looks)
+        found = refine(record, heldout=heldout, inertia=inertia, progress=tell)
+        deliver(found, folder, as_json, tell)
     if not as_json:
         print(f"\nOpen {folder}/report.html to see where the base model fails and how the error falls.")

@@ -7,7 +7,6 @@ import sys
 import warnings
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -16,14 +15,11 @@ from ..criticism import Findings, Refinement, Surface, where_it_fails
 from ..criticism import refine as refine_record
 from ..criticism.ranking import plain
 from ..errors import NoAnswer
-from ..fitting import Fit
 from ..model_file import dump_model
 from ..report.refine_result import other_methods, refinement_json
 from ..system import System
 from .common import Reading, check_window, json_text, model_of_file, out_folder, progress, write_text
 
-PICTURES = "..report.refine_report"
-"""What draws the page: it brings matplotlib, for which a plain run need not wait."""
 WORTH_A_TABLE = 0.3
 """Share of the missing torque that a table must predict out of sample before it is offered as a stopgap."""
 
@@ -47,19 +43,15 @@ def run(
     held = reading.record(heldout) if heldout is not None else None
     folder = out_folder(out)
     system = _given(model, inertia)
-    # What other methods say of the model kept is worked out beside the scores of the ones on the way, and where the base
-    # model fails beside the search.
-    with progress(as_json) as tell, ThreadPoolExecutor(1) as aside, Looks() as looks:
+    # What other methods say of the model kept is worked out beside the scores of the ones on the way.
+    with progress(as_json) as tell, ThreadPoolExecutor(1) as aside:
         checked: list[Future[dict[str, Any]]] = []
-        if folder is not None:
-            aside.submit(import_module, PICTURES, __package__)
         found = refine_record(
             record, heldout=held, model=model if system is None else "joint", inertia=inertia, system=system, window=window,
             translational=translational, seed=seed, progress=tell,
-            begun=looks if folder is not None else lambda fit: None,
             settled=lambda fit: checked.append(aside.submit(other_methods, fit)),
         )  # fmt: skip
-        deliver(found, folder, as_json, tell, checked[0].result, looks)
+        deliver(found, folder, as_json, tell, checked[0].result)
 
 
 def _given(model: str, inertia: float | None) -> System | None:
@@ -76,54 +68,22 @@ def _given(model: str, inertia: float | None) -> System | None:
     return System(full.inertia, full.contact, full.damper, {}, full.observed)
 
 
-class Looks:
-    """Where models fail, looked for beside all else: a future for every fit, the same one where it is asked again."""
-
-    def __init__(self) -> None:
-        self.aside = ThreadPoolExecutor(1)
-        self.known: list[tuple[Fit, Future[Findings]]] = []
-
-    def __enter__(self) -> Looks:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.aside.shutdown(wait=True, cancel_futures=True)
-
-    def __call__(self, fit: Fit) -> Future[Findings]:
-        for known, future in self.known:
-            if known is fit:
-                return future
-        self.known.append((fit, self.aside.submit(lambda: where_it_fails(plain(fit)))))
-        return self.known[-1][1]
-
-    def found(self, fit: Fit) -> Findings | None:
-        """Waits for what was looked for; None where it cannot be told."""
-        try:
-            return self(fit).result()
-        except NoAnswer as error:
-            warnings.warn(f"where the model fails cannot be told: {error}", stacklevel=2)
-            return None
-
-
 def deliver(
-    found: Refinement, folder: Path | None, machine: bool, tell: Any, checked: Callable[[], dict[str, Any]] = lambda: {},
-    looks: Looks | None = None,
-) -> None:  # fmt: skip
+    found: Refinement, folder: Path | None, machine: bool, tell: Any, checked: Callable[[], dict[str, Any]] = lambda: {}
+) -> None:
     """Print a refinement and write result.json, model.toml and report.html into the folder; ``checked`` waits for what other
-    methods say of it, nothing if they have not been asked; ``looks`` may have begun to look where the base model fails."""
-    with looks or Looks() as looks:
-        last = None
-        if not found.verdict.complete:
-            tell("looking for the missing torque", 0.94)
-            last = looks.found(found.fit)
-        if folder is not None:
-            looks(found.stages[0].fit)  # beside the writing and drawing of all else
+    methods say of it, nothing if they have not been asked."""
+    with ThreadPoolExecutor(1) as aside:
+        last = None if found.verdict.complete else _look(found, -1, tell)
+        # The base model is looked at beside the writing and drawing of all else.
+        alone = last is not None and len(found.stages) == 1
+        base = None if alone or folder is None else aside.submit(_look, found, 0, tell)
         words = shlex.join(["jaxbacklash", *sys.argv[1:]])
         result = refinement_json(found, last, command_line=words, version=__version__, checked=checked() or None)
         written = []
         if folder is not None:
             tell("drawing the report", 0.97)
-            written = _write(found, result, last, looks, folder)
+            written = _write(found, result, last, base, folder)
     if machine:
         sys.stdout.write(json_text(result))
         return
@@ -133,8 +93,10 @@ def deliver(
         print(f"written: {folder}/{', '.join(written)}")
 
 
-def _write(found: Refinement, result: dict[str, Any], last: Findings | None, looks: Looks, folder: Path) -> list[str]:
-    """The files of a refinement, by name; ``last`` tells where the model kept fails, ``looks`` where the base model does."""
+def _write(
+    found: Refinement, result: dict[str, Any], last: Findings | None, base: Future[Findings | None] | None, folder: Path
+) -> list[str]:
+    """The files of a refinement, by name; ``base`` will tell where the base model fails, None where ``last`` tells it."""
     fit = found.fit
     write_text(folder / "result.json", json_text(result))
     about = {"translational": fit.translational, "per_inertia": fit.per_inertia}
@@ -147,8 +109,9 @@ def _write(found: Refinement, result: dict[str, Any], last: Findings | None, loo
         title += "\nThe learned torque is a table read from this record: a stopgap, not physics."
         write_text(folder / "model-with-learned-torque.toml", dump_model(stopgap, heading=title, **about))
         written.insert(2, "model-with-learned-torque.toml")
-    drawn = import_module(PICTURES, __package__)
-    drawn.refine_report(found, result, folder / "report.html", first=lambda: looks.found(found.stages[0].fit), last=last)
+    from ..report.refine_report import refine_report  # pictures bring matplotlib, for which a plain run need not wait
+
+    refine_report(found, result, folder / "report.html", first=base.result if base is not None else lambda: last, last=last)
     return written
 
 
@@ -166,3 +129,13 @@ def _worth_a_table(found: Refinement, last: Findings | None) -> Surface | None:
     """What is missing, where it can be offered as a table: a force missing from a measured one is no torque on the link."""
     surface = None if last is None or found.fit.records[0].kind == "transmitted" else last.surface
     return surface if surface is not None and surface.share > WORTH_A_TABLE else None
+
+
+def _look(found: Refinement, stage: int, tell: Any) -> Findings | None:
+    """Where one of the models fails; None where that cannot be told."""
+    tell("looking for the missing torque", 0.94)
+    try:
+        return where_it_fails(plain(found.stages[stage].fit))
+    except NoAnswer as error:
+        warnings.warn(f"where the model fails cannot be told: {error}", stacklevel=2)
+        return None

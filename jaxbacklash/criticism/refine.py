@@ -85,7 +85,6 @@ def refine(
     translational: bool = False,
     seed: int = 0,
     progress: Callable[[str, float], None] = silent,
-    begun: Callable[[Fit], object] = lambda fit: None,
     settled: Callable[[Fit], object] = lambda fit: None,
 ) -> Refinement:
     """Find the effects that a record needs beyond its base model.
@@ -101,7 +100,6 @@ def refine(
     translational : units of a translating mass
     seed : seed of everything random
     progress : told the stage in words and the share of the work done
-    begun : told the base model as soon as it is scored, while effects are still looked for
     settled : told the model kept as soon as it is scored, while the ones on the way to it still are
 
     Raises
@@ -125,19 +123,14 @@ def refine(
         names, model = free_names(system), "given"
     bench = Workbench(record, system, names, window, beside=heldout)
     clock["prepare"] = time.perf_counter()
-    per_inertia = inertia is None and record.kind not in ABSOLUTE and model != "given"
-    judged = _Judge(bench, heldout, model, per_inertia, translational, start)
     with Foresight(bench) as ahead:
-
-        def based(base: Trial) -> None:
-            ahead.after(base)
-            begun(judged(base))
-
-        search = Search(bench, progress, based)
+        search = Search(bench, progress, ahead.after)
         steps = search.run()
     clock["search"] = time.perf_counter()
 
     progress("scoring predictions", 0.85)
+    per_inertia = inertia is None and record.kind not in ABSOLUTE and model != "given"
+    judged = _Judge(bench, heldout, model, per_inertia, translational, start)
     last = judged(steps[-1].trial)
     settled(last)
     fits = [*(judged(s.trial) for s in steps[:-1]), last]
@@ -156,24 +149,15 @@ def refine(
 
 
 class _Judge:
-    """Makes a `Fit`, with scores and intervals, of every model kept: the same one where it is asked again."""
+    """Makes a `Fit`, with scores and intervals, of every model kept."""
 
     def __init__(
         self, bench: Workbench, heldout: Record | None, model: str, per_inertia: bool, translational: bool, start: Start | None
     ) -> None:
         self.bench, self.heldout, self.model = bench, heldout, model
         self.per_inertia, self.translational, self.start = per_inertia, translational, start
-        self.known: list[tuple[Trial, bool, Fit]] = []
 
     def __call__(self, trial: Trial) -> Fit:
-        cut = self.bench.is_cut
-        for known, was_cut, fit in self.known:
-            if known is trial and was_cut == cut:
-                return fit
-        self.known.append((trial, cut, self._judge(trial)))
-        return self.known[-1][2]
-
-    def _judge(self, trial: Trial) -> Fit:
         bench = self.bench
         problem, free = bench.problem(bench.effects(trial), trial.system)
         still = Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
