@@ -142,7 +142,7 @@ class System(eqx.Module):
 
     def torques(self, now: Instant, state: State) -> tuple[Scalar, Scalar]:
         """All torque on the link but the driving force, and the part of it that acts through the joint [N m]."""
-        joint: Any = -now.stiffness * now.deflection - self.damper.damping * now.dz
+        joint: Any = self.bare_torque(now)
         ground: Any = 0.0
         for name, own in self._own_states(state):
             effect = self.effects[name]
@@ -152,6 +152,10 @@ class System(eqx.Module):
             else:
                 ground = ground + torque
         return joint + ground, joint
+
+    def bare_torque(self, now: Instant) -> Scalar:
+        """Torque on the link of the joint without any effect [N m]."""
+        return -now.stiffness * now.deflection - self.damper.damping * now.dz
 
     def _play(self, t: Scalar) -> Play:
         assert isinstance(self.contact, Contact)

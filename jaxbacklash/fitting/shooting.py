@@ -25,6 +25,7 @@ from ..parameters import unravel
 from ..signals import DEGREE
 from ..solvers.substeps import run_panels
 from ..system import System
+from .awake import waking
 from .chunks import by_chunks
 from .tangents import drive, rows, trajectories
 from .windows import Windows
@@ -297,7 +298,7 @@ def _meet(shared: tuple[Problem, Array], lead: tuple[Window, Shot]) -> Met:
     w = problem.windows
     n, q = own.start.shape[1], theta.shape[0]
     basis, lagged = _input_tangents(problem, theta, own.local)
-    motion_rows, end_rows = rows(w, problem.rebuild, theta, problem.active, shot.states, shot.u, shot.du, basis, lagged)
+    motion_rows, end_rows = rows(w, waking(problem), theta, problem.active, shot.states, shot.u, shot.du, basis, lagged)
     tie_weight = tie_weights(problem, n)
     weighted = jnp.concatenate([motion_rows * w.weight[:, None, :], end_rows * tie_weight[:, None, :]], axis=2)
     gram = jnp.einsum("wir,wjr->wij", weighted, weighted)
