@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 
 from ..mechanics import AbstractEffect, Instant
 from ..parameters import Scalar, specs
@@ -39,7 +38,8 @@ class Awake(System):  # type: ignore[misc]  # mypy takes parameters that must be
         """As those of a system whose other laws are not there."""
         # All that a law may look at is handed to it: what each found by itself would be carried along once for every law.
         seen = {f.name: v for f in fields(now) if f.name != "state" and (v := getattr(now, f.name)) is not None}
-        own = {name: states for name, states in self._own_states(state) if name in exerting(self)}
+        states = dict(self._own_states(state))
+        own = {name: states[name] for name in exerting(self)}
 
         def of(name: str) -> Callable[[Any, Any, Any], tuple[Scalar, Scalar]]:
             def exerted(seen: Any, own: Any, effects: Any) -> tuple[Scalar, Scalar]:
@@ -74,14 +74,15 @@ def acting(system: System, base: Array, directions: Array) -> tuple[Array, Array
     base : (p,) all parameter values
     directions : (p, q) how they move; a law acts if any of its parameters may move, or a strength is not at its null value
     """
-    described = specs(system)
+    described = list(specs(system).items())
     moving = jnp.any(directions != 0.0, axis=1)
     found: list[Array] = []
     for law in exerting(system):
-        own = [i for i, name in enumerate(described) if name.partition(".")[0] == law]
-        nulls = {i: spec.null for i, spec in enumerate(described.values()) if i in own and not spec.fixed}
-        strong = [base[i] != null for i, null in nulls.items() if null is not None]
-        found.append(jnp.any(jnp.stack([*strong, *moving[np.array(own)]])) if strong else jnp.asarray(True))
+        own = [(i, spec) for i, (name, spec) in enumerate(described) if name.startswith(f"{law}.")]
+        strong = [base[i] != spec.null for i, spec in own if spec.null is not None and not spec.fixed]
+        moved = [moving[i] for i, _ in own]
+        # A law without a strength never vanishes.
+        found.append(jnp.any(jnp.stack([*strong, *moved])) if strong else jnp.asarray(True))
     awake = jnp.stack(found)
     return jnp.argsort(~awake, stable=True), jnp.sum(awake)
 
