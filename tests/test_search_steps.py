@@ -19,6 +19,7 @@ class Model:
     tied: bool = True
     done: bool = True
     misfit: float = 1.0
+    correlation: float = 1.0
     free: tuple[str, ...] = ("backlash",)
     effects: dict[str, str] = field(default_factory=dict)
 
@@ -281,3 +282,27 @@ def test_a_richer_relative_replaces_a_law_only_where_it_is_clearly_better(monkey
     monkeypatch.setattr(search, "reduced", lambda steps: steps)
     steps, _ = search.swap([Step(simple, "simple", (), ())])
     assert (steps[-1].trial is rich) == taken
+
+
+def test_what_a_replacement_makes_needless_goes_with_what_it_replaces(monkeypatch):
+    """A wrong law and one that made up for it explain as much as the right one; the second is needless beside that."""
+    significant(monkeypatch, 0.5)
+    wrong = Model(frozenset({"simple", "other"}), cost=100.0, free=("backlash", "a", "b"))
+    right = Model(frozenset({"rich", "other"}), cost=90.0, free=("backlash", "c", "b"))
+    search = Search(Bench(Model(frozenset({"rich"}), cost=90.5, free=("backlash", "c"))))
+    search.bench.laws = laws(simple=(), rich=(), other=())
+    monkeypatch.setattr("jaxbacklash.criticism.search.gain", lambda before, after: before.criterion - after.criterion)
+    monkeypatch.setattr(search, "instead", lambda steps, name: [right] if name == "simple" else [])
+    monkeypatch.setattr(search, "reduced", lambda steps: steps)
+    steps, _ = search.swap([Step(wrong, "simple", (), ())])
+    assert (steps[-1].trial.names, steps[-1].added, steps[-1].dropped) == ({"rich"}, "rich", ("other",))
+
+
+@pytest.mark.parametrize(("predicted", "searches"), [(1.0, 1), (1e3, 3)])
+def test_what_promises_too_little_is_not_looked_for_by_free_windows(predicted, searches):
+    before = Model(frozenset({"preload"}), cost=100.0)
+    stuck = Model(frozenset({"gravity", "preload"}), cost=1e6, misfit=50.0, done=False)
+    search = Search(Bench(stuck, replace(stuck, cost=80.0, tied=False), replace(stuck, cost=90.0)))
+    search.bench.record = SimpleNamespace(samples=1000)
+    search.add(before, SimpleNamespace(name="gravity", effect=Gravity(G=20.0), gain=predicted))
+    assert len(search.bench.asked) == searches

@@ -238,7 +238,9 @@ class Search(Tried):
                         return self.swap([*steps[:-1], self.freed(steps[-1], relieved)], seen)
                     other = other if other.done else self.finish(other)
                     added = next(iter(other.names - final.names))
-                    path = self.reduced([*steps[:-1], Step(other, added, (), ())])
+                    # What stood beside the effect that is replaced may have made up for it.
+                    other, dropped = self.prune(other, spare=added)
+                    path = self.reduced([*steps[:-1], Step(other, added, dropped, ())])
                     if path[-1].trial.names not in seen:
                         return self.swap(path, seen)
                 if -lead < demanded(self.bench):
@@ -393,9 +395,7 @@ class Search(Tried):
         """
         law = self.bench.laws[candidate.name]
         smooth = current.tied and adequate(current) and not (law.slides or self.dry(current))
-        own = len(strengths(candidate.effect)) * math.log(max(self.bench.record.samples, 2)) if smooth else 0.0
-        scale = max(1.0, current.misfit**2) * current.correlation
-        return candidate.gain / scale > 0.5 * (demanded(self.bench) + own)
+        return self.promised(current, candidate, counted=smooth) > 0.5
 
     def finished(self, current: Trial, tried: dict[str, Trial]) -> dict[str, Trial]:
         """The same candidates, those fitted to the end that lie close to the best."""
@@ -448,14 +448,14 @@ class Search(Tried):
         while True:
             # Far from zero needs no trial; what is near is left out and fitted again.
             doubtful = [n for n in trial.names if n != spare and significance(trial, n) < CLEAR]
-            losses = {n: gain(self.without(trial, n), trial) for n in doubtful}
+            simpler = {n: self.without(trial, n) for n in doubtful}
             # A model with as many parameters is another one, not a simpler one.
-            simpler = {n for n in doubtful if len(self.without(trial, n).free) < len(trial.free)}
-            needless = [n for n, loss in losses.items() if loss < demanded(self.bench) and n in simpler]
+            losses = {n: gain(t, trial) for n, t in simpler.items() if len(t.free) < len(trial.free)}
+            needless = [n for n, loss in losses.items() if loss < demanded(self.bench)]
             if not needless:
                 return trial, tuple(dropped)
             name = min(needless, key=lambda n: losses[n])
-            trial = self.settle(self.without(trial, name))
+            trial = self.settle(simpler[name])
             dropped.append(name)
 
     def hidden(self, start: Trial) -> list[Trial]:

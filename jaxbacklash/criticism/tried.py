@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 from ..fitting.search import silent
@@ -101,12 +102,24 @@ class Tried:
                 behind = start.criterion - rival.criterion > 2.0 * demanded(self.bench) and start.cost < before.cost
                 if behind and len(start.free) > len(rival.free):
                     return self._keep(start)
-            trial = self._keep(self.joined(effects, before) if before.tied else self.bench.fit(effects, start))
+            if not before.tied:
+                trial = self._keep(self.bench.fit(effects, start))
+            elif names > before.names and self.promised(before, candidate) < 1.0:
+                # One search is enough: if the model before has stuck, an addition that does nothing else may bring it on.
+                return self._keep(self.bench.fit(effects, before, tied=True))
+            else:
+                trial = self._keep(self.joined(effects, before))
             if trial.cost > before.cost and names > before.names:
                 # The larger model holds the smaller one: it has stuck on the way from the strength that was predicted.
                 slight = with_values(effect, {n: SLIGHT * values(effect)[n] for n in strengths(effect)})
                 self._keep(self.bench.fit({**present, candidate.name: slight}, before, tied=before.tied))
         return self.known[key]
+
+    def promised(self, before: Trial, candidate: Candidate, *, counted: bool = True) -> float:
+        """What a candidate is predicted to bring, as a share of what it must; ``counted`` says that it must outweigh its own
+        parameters too."""
+        own = len(strengths(candidate.effect)) * math.log(max(self.bench.record.samples, 2)) if counted else 0.0
+        return candidate.gain / (max(1.0, before.misfit**2) * before.correlation * (demanded(self.bench) + own))
 
     def joined(self, effects: dict[str, AbstractEffect], before: Trial, patience: int = PATIENCE) -> Trial:
         """A tied fit from the windows of another model; where it sticks, as dry friction may, or creeps along a curved valley,
