@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 from scipy.special import chdtrc
 
 from ..records import Record
@@ -65,9 +66,9 @@ def excitation(record: Record, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     length = max(3, round(1.0 / record.dt))
 
     def spread(values: np.ndarray) -> np.ndarray:
-        padded = np.pad(values, (length // 2, length - length // 2 - 1), mode="reflect")
-        windows = np.lib.stride_tricks.sliding_window_view(padded, length)
-        return np.asarray(np.std(windows, axis=1))
+        away = values - np.mean(values)
+        mean, square = (uniform_filter1d(part, length, mode="mirror") for part in (away, away**2))
+        return np.sqrt(np.maximum(square - mean**2, 0.0))
 
     fast, high = spread(rate), spread(value)
     frequency = fast / np.maximum(2.0 * np.pi * high, 1e-300)

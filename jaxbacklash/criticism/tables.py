@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy import sparse
 from scipy.linalg import solveh_banded
 
 from ..compiled import kept_jit
@@ -74,18 +75,16 @@ _basis = kept_jit(basis_at)
 
 def _project(along: np.ndarray, spacing: float, count: int) -> np.ndarray:
     """Least-squares fit of piecewise linear functions with ``count`` values, ``spacing`` samples apart, to each column."""
-    at = np.arange(along.shape[0]) / spacing
+    samples = along.shape[0]
+    at = np.arange(samples) / spacing
     left = np.minimum(at.astype(int), count - 2)
     right = np.clip(at - left, 0.0, 1.0)
-    banded = np.zeros((2, count))
-    np.add.at(banded[1], left, (1.0 - right) ** 2)
-    np.add.at(banded[1], left + 1, right**2)
-    np.add.at(banded[0], left + 1, right * (1.0 - right))
+    rows = np.tile(np.arange(samples), 2)
+    hats = sparse.csr_array((np.concatenate([1.0 - right, right]), (np.concatenate([left, left + 1]), rows)), (count, samples))
+    gram = hats @ hats.T
+    banded = np.stack([np.concatenate([[0.0], gram.diagonal(1)]), gram.diagonal()])
     banded[1] += 1e-6 * banded[1].max()
-    sums = np.zeros((count, along.shape[1]))
-    np.add.at(sums, left, (1.0 - right)[:, None] * along)
-    np.add.at(sums, left + 1, right[:, None] * along)
-    return solveh_banded(banded, sums)
+    return solveh_banded(banded, hats @ along)
 
 
 def at_times(latent: Latent, phi: np.ndarray) -> np.ndarray:
