@@ -33,9 +33,9 @@ def fresh(code: str) -> str:
 
 
 def text_files() -> list[Path]:
-    """The files of the repository that hold text; without git, those below its folders."""
+    """The files of the repository that hold text, whatever else was made beside them; without git, those below its folders."""
     if (ROOT / ".git").exists() and shutil.which("git"):
-        command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+        command = ["git", "ls-files", "-z", "--cached"]
         listed = subprocess.run(command, cwd=ROOT, capture_output=True, check=True).stdout.decode()
         found = [ROOT / name for name in listed.split("\0") if name]
     else:
