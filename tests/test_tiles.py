@@ -117,7 +117,7 @@ import numpy as np
 from tests.test_tiles import small
 from jaxbacklash.dynamics.labels import write_netcdf
 from jaxbacklash.dynamics.maps import run_map
-tell = lambda words, share: print(words, flush=True)
+tell = lambda words, share: (print(words, flush=True), sys.stdin.readline())  # nobody outruns who is to be killed
 write_netcdf(run_map(small(lanes=2), store=sys.argv[1], workers=1, progress=tell), sys.argv[2])
 """
 
@@ -125,8 +125,9 @@ write_netcdf(run_map(small(lanes=2), store=sys.argv[1], workers=1, progress=tell
 def begun(store, out):
     environment = os.environ | {"PYTHONPATH": str(ROOT), "JAX_PLATFORMS": "cpu"}
     return subprocess.Popen(
-        [sys.executable, "-c", RUN, str(store), str(out)], cwd=ROOT, env=environment, stdout=subprocess.PIPE, text=True
-    )
+        [sys.executable, "-c", RUN, str(store), str(out)], cwd=ROOT, env=environment, stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE, text=True, bufsize=1,
+    )  # fmt: skip
 
 
 @pytest.mark.slow
@@ -138,6 +139,7 @@ def test_killed_three_times_it_ends_with_the_same_bits(tmp_path):
         run = begun(store, out)
         for _ in range(int(rng.integers(2, 8))):  # so many tiles, and then some time into the next
             assert run.stdout.readline()
+            run.stdin.write("go on\n")
         time.sleep(float(rng.uniform(0.0, 0.05)))
         run.send_signal(signal.SIGKILL)
         assert run.wait() == -signal.SIGKILL
@@ -145,8 +147,8 @@ def test_killed_three_times_it_ends_with_the_same_bits(tmp_path):
     records = len(list((store / "records").glob("*.json")))
     assert 6 <= records < len(small(lanes=2).tiles())
     run = begun(store, out)
-    told = run.stdout.read().splitlines()
-    assert run.wait() == 0
+    told = run.communicate()[0].splitlines()
+    assert run.returncode == 0
     assert len(told) <= len(small(lanes=2).tiles()) - records
     fresh = begun(tmp_path / "fresh", tmp_path / "fresh.nc")
     fresh.communicate()
