@@ -59,12 +59,17 @@ def on_cpu() -> bool:
 def start(*, cache: bool = True, devices: int | None = None, brief: bool = False) -> None:
     """Switch to double precision, ask for wide vectors and one device a core, and keep compiled programs for the next run.
 
+    Linear algebra is told to keep to one thread, unless the environment says otherwise: what this program hands to it is many
+    small matrices, over which several threads only wait for one another and take a core from the devices.
+
     Parameters
     ----------
     cache : keep compiled programs in `cache_folder`
     devices : CPU devices that share a fit's windows; default one a core, at most `MOST_CORES`
     brief : the program computes little and ends, like most commands: compile faster, even if what is compiled is slower
     """
+    # Read when the library loads, which JAX leaves until the first matrix.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     import jax
 
     # XLA reads its flags when the first computation starts.

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from jaxbacklash.program import cores
+
 ROOT = Path(__file__).resolve().parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -61,6 +63,23 @@ loaded = [name for name in ("matplotlib", "rich", "typer", "jinja2", "jaxbacklas
 assert not loaded, loaded
 """
     assert fresh(code) == ""
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir() or cores() < 2, reason="counts threads, of which one core has one")
+@pytest.mark.parametrize(("chosen", "more"), [({}, 0), ({"OPENBLAS_NUM_THREADS": "2"}, 1)])
+def test_a_program_that_has_started_gives_linear_algebra_one_thread_unless_told_otherwise(chosen, more):
+    code = f"""
+import os
+os.environ.pop("OPENBLAS_NUM_THREADS", None)
+os.environ.update({chosen!r})
+import jaxbacklash
+jaxbacklash.start(cache=False)
+import numpy, scipy.sparse
+before = len(os.listdir("/proc/self/task"))
+import scipy.linalg
+print(len(os.listdir("/proc/self/task")) - before)
+"""
+    assert int(fresh(code)) == more
 
 
 def test_pictures_touch_no_settings():

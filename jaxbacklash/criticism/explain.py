@@ -24,13 +24,12 @@ Array = Any
 
 class Explained(eqx.Module):
     """Evidence (log marginal likelihood), the table ``beta`` (R,) and its ``covariance`` (R, R) in the smoother's unit, the
-    parameters ``theta`` (q,) that go with it, and the whole torque ``torque`` (W, K)."""
+    parameters ``theta`` (q,) that go with it."""
 
     evidence: Array
     beta: Array
     covariance: Array
     theta: Array
-    torque: Array
 
 
 class Prepared(eqx.Module):
@@ -83,7 +82,7 @@ def explain(s: Smoother, at: Point, prepared: Prepared, phi: Array, penalty: Arr
     against = jnp.einsum("wir,wi->r", full, prepared.slope)
     rows = jnp.sum(s.present) * s.nodes
 
-    def one(under: Any) -> tuple[Array, Array, Array, Array]:
+    def one(under: Any) -> tuple[Array, Array, Array]:
         log_precision, factor, known = under
         precision = jnp.exp(log_precision)
         new = forward(factor, -precision * pulled)
@@ -92,11 +91,11 @@ def explain(s: Smoother, at: Point, prepared: Prepared, phi: Array, penalty: Arr
         done = bordered(factor, halfway, corner, jnp.concatenate([linear.slope_theta, -precision * against]))
         least = linear.cost + 0.5 * precision * prepared.rough - done.promise
         told = 0.5 * rows * log_precision - 0.5 * done.log_determinant - least
-        return told, done.theta, done.schur, done.local[:, place]
+        return told, done.theta, done.schur
 
-    told, step, schur, moved = jax.lax.map(one, (prepared.log_precisions, prepared.factor, prepared.halfway))
+    told, step, schur = jax.lax.map(one, (prepared.log_precisions, prepared.factor, prepared.halfway))
     told = jnp.where(jnp.isfinite(told), told, -jnp.inf) + 0.5 * jnp.linalg.slogdet(penalty)[1]
     best = jnp.argmax(told)
     covariance = jsl.cho_solve((schur[best], True), jnp.eye(q + width))[q:, q:]
     theta = jnp.clip(at.unknowns.theta + step[best][:q], s.problem.lower, s.problem.upper)
-    return Explained(told[best], step[best][q:], covariance, theta, at.torque + moved[best])
+    return Explained(told[best], step[best][q:], covariance, theta)
