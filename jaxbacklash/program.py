@@ -9,8 +9,6 @@ import contextlib
 import os
 from pathlib import Path
 
-from .precision import enable_double_precision
-
 MOST_CORES = 8
 """More devices than this do not speed up a fit of usual length."""
 
@@ -68,9 +66,11 @@ def start(*, cache: bool = True, devices: int | None = None, brief: bool = False
     devices : CPU devices that share a fit's windows; default one a core, at most `MOST_CORES`
     brief : the program computes little and ends, like most commands: compile faster, even if what is compiled is slower
     """
-    # Read when the library loads, which JAX leaves until the first matrix.
+    # Read when NumPy and SciPy load, which is no later than JAX.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     import jax
+
+    from .precision import enable_double_precision
 
     # XLA reads its flags when the first computation starts.
     flags = os.environ.get("XLA_FLAGS", "")
