@@ -121,3 +121,12 @@ def test_series_breaks_are_null_and_close_no_script():
     assert json.loads(text)["measured"] == [1.0, None]
     assert json.loads(text)["model"] == [None, 2.0]
     assert not set("<>&") & set(text)
+
+
+def test_series_numbers_are_those_that_text_with_as_many_digits_gives():
+    rng = np.random.default_rng(5)
+    values = np.concatenate([rng.standard_normal(4000) * 10.0 ** rng.integers(-12, 9, 4000), [0.0, -0.0, 1e30, 123456789.5]])
+    data = json.loads(series_json({"t": np.arange(values.size) / 500.0, "measured": values, "residual_over_noise": values}))
+    assert data["t"] == [k / 500.0 for k in range(values.size)]
+    for name, digits in (("measured", 7), ("residual", 4)):
+        assert data[name] == [float(f"{value:.{digits}g}") for value in values]

@@ -36,7 +36,7 @@ def families(bench: Workbench) -> dict[str, list[str]]:
 
 
 def members(bench: Workbench, trial: Trial, names: Sequence[str], rivals: Sequence[Rival] = ()) -> list[Member]:
-    """The laws of one family that may stand in a model, the likeliest first.
+    """The laws of one family that may stand in a model, the likeliest first, of those that are as likely the simplest.
 
     Where there is none yet, it takes the place of dry friction in the joint, which it contains. It has to be ahead of each of
     the ``rivals`` beside that friction; where there is no friction yet, by more than the share within which others do as
@@ -68,7 +68,8 @@ def members(bench: Workbench, trial: Trial, names: Sequence[str], rivals: Sequen
             found.append(Member(name, beside, tuned, ahead, kin))
         elif kin is None and not found:
             break  # where the simplest of a family says nothing, its kin do not either
-    return sorted(found, key=lambda m: -m.lead)
+    most = max((m.lead for m in found), default=0.0)
+    return sorted(found, key=lambda m: (most - m.lead, 0) if most - m.lead > demanded(bench) else (0.0, m.tuned.count))
 
 
 def may_replace(bench: Workbench, trial: Trial, name: str, others: Sequence[AbstractEffect]) -> list[bool]:

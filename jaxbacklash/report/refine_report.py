@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ..criticism import Findings, Refinement
 from .diagnose_report import failure_panels
-from .figures import candidate_ranking, error_by_stage, residual_in_time, to_svg
+from .figures import candidate_ranking, error_by_stage, to_svg
 from .fit_report import pictures, series
 from .html import Panel, write_report
 
@@ -39,7 +40,8 @@ def refine_report(
         panels += _failures(base, "the base model", "base", fit.translational)
     if len(refinement.stages) > 1 or base is None:
         have = " + ".join(["the base model", *refinement.effects])
-        panels += _failures(last, have, "last", fit.translational) if last is not None else [_rest(refinement, have)]
+        rest = joint["residual"]
+        panels += [_rest(refinement, have, rest)] if last is None else _failures(last, have, "last", fit.translational)
     panels += [joint[name] for name in ("loop", "model", "force", "phase") if name in joint]
     write_report(path, result, panels, series(fit.records[0], fit.score, fit.translational))
 
@@ -101,14 +103,11 @@ def _failures(found: Findings, have: str, anchor: str, translational: bool) -> l
     ]  # fmt: skip
 
 
-def _rest(refinement: Refinement, have: str) -> Panel:
+def _rest(refinement: Refinement, have: str, picture: Panel) -> Panel:
     """What a model leaves that explains the record."""
     score = refinement.fit.score
-    drawn = residual_in_time(score.t, score.residual, window_edges=score.window_times, window_rms=score.window_rms)
-    return Panel(
-        f"What is left: {have}",
+    sentence = (
         f"The median window is off by {score.median:.3g} times the noise, all windows by {score.rms:.3g}; noise alone would "
-        "stay within two noises and hang together nowhere.",
-        to_svg(drawn),
-        "last-residual",
+        "stay within two noises and hang together nowhere."
     )
+    return replace(picture, title=f"What is left: {have}", sentence=sentence, anchor="last-residual")

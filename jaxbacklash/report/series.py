@@ -12,6 +12,8 @@ from .drawing import column
 from .thinning import extremes
 
 LIMIT = 20_000  # points; a browser draws so many without effort
+EXACT = 22
+TENS = np.array([float(10**k) for k in range(EXACT + 1)])
 CHANNELS = ("measured", "model", "residual_over_noise")
 
 
@@ -52,4 +54,11 @@ def series_json(series: Mapping[str, Any], limit: int = LIMIT) -> str:
 
 
 def _plain(values: np.ndarray, digits: int) -> list[float | None]:
-    return [float(f"{value:.{digits}g}") if np.isfinite(value) else None for value in values]
+    """Numbers with so many significant digits, but not more than 22 decimals, the shortest that a reader turns into the same."""
+    there = np.isfinite(values) & (values != 0.0)
+    power = np.floor(np.log10(np.abs(values), out=np.zeros(values.shape), where=there))
+    decimals = np.clip(digits - 1 - power, -EXACT, EXACT).astype(int)
+    # Powers of ten up to the 22nd are exact, and so a quotient by one is the number nearest to its decimals.
+    large, small = TENS[np.maximum(decimals, 0)], TENS[np.maximum(-decimals, 0)]
+    rounded = np.rint(np.where(there, values, 0.0) * large / small) * small / large
+    return [value if known else None for value, known in zip(rounded.tolist(), np.isfinite(values).tolist())]
