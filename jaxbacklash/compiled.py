@@ -49,7 +49,8 @@ def kept_jit(function: Callable[..., Any]) -> Callable[..., Any]:
     Arguments are positional. A program is not kept, only jitted, where its arguments hold classes or functions of other
     packages (a user's own law may change without changing its name), and where it is called within another traced
     function. A kept file that cannot be read is made anew. What the result's ``programs`` holds is what this process uses. Its
-    ``ready`` takes the same arguments and does all but the computing: threads can have the compiler at work side by side.
+    ``ready`` takes the same arguments and does all but the computing: threads can have the compiler at work side by side;
+    ``fetch`` does so only where the program is kept.
     """
     jitted = eqx.filter_jit(function)
     programs: dict[Key, Future[Any]] = {}
@@ -63,7 +64,7 @@ def kept_jit(function: Callable[..., Any]) -> Callable[..., Any]:
         if folder is None or any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
             return jitted, []
         arrays = [leaf for leaf in leaves if _is_array(leaf)]
-        kinds = tuple((a.shape, str(a.dtype), bool(getattr(a, "weak_type", False))) for a in arrays)
+        kinds = _kinds(leaves)
         key = (structure, tuple(_Here if _is_array(leaf) else leaf for leaf in leaves), kinds)
         try:
             with lock:
@@ -73,7 +74,7 @@ def kept_jit(function: Callable[..., Any]) -> Callable[..., Any]:
             return jitted, []
         if mine:  # another thread that asks for the same program waits for this one
             try:
-                coming.set_result(_find(function, args, kinds, Path(folder) / "programs") or jitted)
+                coming.set_result(_find(function, args, kinds, folder) or jitted)
             except BaseException as error:
                 del programs[key]
                 coming.set_exception(error)
@@ -88,12 +89,23 @@ def kept_jit(function: Callable[..., Any]) -> Callable[..., Any]:
     def ready(*args: Any) -> None:
         made(args)
 
-    call.programs, call.ready = programs, ready  # type: ignore[attr-defined]
+    def fetch(*args: Any) -> None:
+        setting: Any = jax.config
+        folder = setting.jax_compilation_cache_dir
+        with contextlib.suppress(_Foreign, *UNKEPT):
+            if folder is not None and _path(function, args, _kinds(jax.tree.leaves(args)), folder).exists():
+                made(args)
+
+    call.programs, call.ready, call.fetch = programs, ready, fetch  # type: ignore[attr-defined]
     return call
 
 
 class _Here:
     """Marks an array's place in a tree."""
+
+
+def _kinds(leaves: list[Any]) -> tuple[Any, ...]:
+    return tuple((a.shape, str(a.dtype), bool(getattr(a, "weak_type", False))) for a in leaves if _is_array(a))
 
 
 def _is_array(leaf: Any) -> bool:
@@ -115,10 +127,14 @@ class _Program:
         return jax.tree.map(lambda leaf: next(results) if leaf is _Here else leaf, self.frame)
 
 
-def _find(function: Callable[..., Any], args: Any, kinds: Any, folder: Path) -> _Program | None:
+def _path(function: Callable[..., Any], args: Any, kinds: Any, folder: str) -> Path:
+    return Path(folder) / "programs" / f"{_name(function, args, kinds)}{SUFFIX}"
+
+
+def _find(function: Callable[..., Any], args: Any, kinds: Any, folder: str) -> _Program | None:
     """The program from its file, or traced and kept there; nothing where it cannot be kept."""
     try:
-        path = folder / f"{_name(function, args, kinds)}{SUFFIX}"
+        path = _path(function, args, kinds, folder)
         found = _load(path)
         if found is None:
             found = _make(function, args, path.name)

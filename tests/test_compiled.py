@@ -91,6 +91,21 @@ def test_threads_that_ask_for_the_same_program_make_it_once(cache):
     assert traced == ["traced"]
 
 
+def test_what_is_fetched_is_read_if_it_is_kept_and_not_made_if_it_is_not(cache):
+    traced: list[str] = []
+    a = np.arange(4.0)
+    first = process(traced)
+    first.fetch(None, a, None, 2)
+    assert not first.programs
+    assert not traced
+    first(None, a, None, 2)
+    second = process(traced)
+    second.fetch(None, a, None, 2)
+    assert len(second.programs) == 1
+    assert second(None, a, None, 2)["sum"] == pytest.approx(14.0)
+    assert traced == ["traced"]
+
+
 def test_a_program_that_could_not_be_made_is_asked_for_again(cache):
     traced: list[str] = []
     call = slow(traced, [KeyboardInterrupt()])

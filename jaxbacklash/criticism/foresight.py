@@ -9,13 +9,14 @@ from __future__ import annotations
 from concurrent.futures import ThreadPoolExecutor
 from types import TracebackType
 
-from ..fitting.levenberg import Levenberg, ready
+from ..fitting.levenberg import Levenberg, fetch, ready
 from ..fitting.setup import first_guess
 from ..fitting.shooting import Problem
+from ..mechanics import AbstractEffect
 from ..parameters import values, with_values
 from ..system import System
 from .along_motion import own_torques
-from .memories import families
+from .memories import Member, families
 from .tuning import apart, tune
 from .workbench import Trial, Workbench, strengths
 
@@ -46,6 +47,15 @@ class Foresight:
         if law is not None:
             self.aside.submit(self.sliding, base, law)
         self.aside.submit(self.looks, base, law)
+
+    def member(self, law: Member) -> None:
+        """Read the program of a model with a law that has a memory, if it is kept: it is the largest of all, and too dear to
+        compile on a first sight of the law."""
+        self.aside.submit(self._fetch, {**law.beside, law.name: law.tuned.effect}, law.tuned.system)
+
+    def _fetch(self, effects: dict[str, AbstractEffect], joint: System) -> None:
+        problem, _ = self.bench.problem(effects, joint)
+        fetch(problem, first_guess(problem), Levenberg())
 
     def catalogue(self) -> None:
         """The catalogue's program, which every search needs after that of the joint alone."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from ..mechanics import AbstractEffect
@@ -35,13 +35,17 @@ def families(bench: Workbench) -> dict[str, list[str]]:
     return found
 
 
-def members(bench: Workbench, trial: Trial, names: Sequence[str], rivals: Sequence[Rival] = ()) -> list[Member]:
+def members(
+    bench: Workbench, trial: Trial, names: Sequence[str], rivals: Sequence[Rival] = (),
+    seen: Callable[[Member], object] = lambda member: None,
+) -> list[Member]:  # fmt: skip
     """The laws of one family that may stand in a model, the likeliest first, of those that are as likely the simplest.
 
     Where there is none yet, it takes the place of dry friction in the joint, which it contains. It has to be ahead of each of
     the ``rivals`` beside that friction; where there is no friction yet, by more than the share within which others do as
     well, since dry friction gives over no distance at all. Where there is one, its kin take its place unless the quick look
-    puts them behind it, alone or with one of the rivals beside it. None where the link's motion is not in the record.
+    puts them behind it, alone or with one of the rivals beside it. None where the link's motion is not in the record. ``seen`` is
+    told the first as soon as it is tuned.
     """
     if bench.quick.blind:
         return []
@@ -66,6 +70,8 @@ def members(bench: Workbench, trial: Trial, names: Sequence[str], rivals: Sequen
             least = max(least, (1.0 - AS_WELL) * lead(bench.quick, free, tuned, system, [([], 0)]))
         if ahead > least:
             found.append(Member(name, beside, tuned, ahead, kin))
+            if len(found) == 1:
+                seen(found[0])
         elif kin is None and not found:
             break  # where the simplest of a family says nothing, its kin do not either
     most = max((m.lead for m in found), default=0.0)

@@ -124,7 +124,7 @@ def refine(
     bench = Workbench(record, system, names, window, beside=heldout)
     clock["prepare"] = time.perf_counter()
     with Foresight(bench) as ahead:
-        search = Search(bench, progress, ahead.after)
+        search = Search(bench, progress, ahead.after, ahead.member)
         steps = search.run()
     clock["search"] = time.perf_counter()
 

@@ -12,7 +12,7 @@ from ..fitting.search import ADEQUATE, silent
 from ..mechanics import AbstractEffect
 from .candidates import Candidate, rank
 from .evidence import AS_WELL, NOISE_FLOOR, UNEXPLAINED, demanded, excess, explained, gain, measures_only, shapeless, significance
-from .memories import families, may_replace, members
+from .memories import Member, families, may_replace, members
 from .tried import LOOSER, WHOLE, Tried
 from .tuning import apart
 from .under_noise import blurred, own_rest, promises
@@ -59,9 +59,10 @@ class Search(Tried):
         bench: Workbench,
         progress: Callable[[str, float], None] = silent,
         based: Callable[[Trial], object] = lambda base: None,
+        seen: Callable[[Member], object] = lambda member: None,
     ) -> None:
         super().__init__(bench, progress)
-        self.based = based  # told the fit of the joint alone
+        self.based, self.seen = based, seen  # told the fit of the joint alone, and laws with a memory that may come in
         self.level: dict[tuple[str, ...], Trial] = {}
 
     def base(self) -> Trial:
@@ -417,7 +418,8 @@ class Search(Tried):
         better than another of its family alone.
         """
         rivals = [apart(c.effect, strengths(c.effect)) for c in ranking[:TRIED] if c.gain > 0.0]
-        first = [found[0] for names in families(self.bench).values() if (found := members(self.bench, current, names, rivals))]
+        each = (members(self.bench, current, names, rivals, self.seen) for names in families(self.bench).values())
+        first = [found[0] for found in each if found]
         return {m.name: self.placed(current, m, tied=current.tied) for m in first}
 
     def best(self, current: Trial, tried: dict[str, Trial], least: float) -> str:

@@ -53,6 +53,11 @@ def ready(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int = MO
     _minimise.ready(problem, start, how, max_steps)  # type: ignore[attr-defined]
 
 
+def fetch(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int = MOST) -> None:
+    """Read what `minimise` will run, if an earlier process has kept it."""
+    _minimise.fetch(problem, start, how, max_steps)  # type: ignore[attr-defined]
+
+
 @kept_jit
 def _minimise(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int) -> tuple[Unknowns, dict[str, Any]]:
     # Asked for only while tracing: a program that was kept need not wait for optimistix, diffrax and lineax to load.
