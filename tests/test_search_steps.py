@@ -7,7 +7,7 @@ import pytest
 
 from jaxbacklash.criticism.search import Search, Step
 from jaxbacklash.criticism.tried import SLIGHT
-from jaxbacklash.effects import Gravity
+from jaxbacklash.effects import CoulombJoint, Gravity, Stribeck
 
 
 @dataclass(frozen=True)
@@ -306,3 +306,29 @@ def test_what_promises_too_little_is_not_looked_for_by_free_windows(predicted, s
     search.bench.record = SimpleNamespace(samples=1000)
     search.add(before, SimpleNamespace(name="gravity", effect=Gravity(G=20.0), gain=predicted))
     assert len(search.bench.asked) == searches
+
+
+@pytest.mark.parametrize(
+    ("elsewhere", "from_here", "ties"),
+    [
+        (Model(frozenset({"coulomb_joint"}), cost=200.0, tied=False, misfit=1.4), 190.0, False),
+        (Model(frozenset({"coulomb_joint"}), cost=200.0, tied=False, misfit=1.4), 100.2, True),
+        (Model(frozenset({"coulomb_joint"}), cost=130.0, tied=False, misfit=1.0), None, True),
+        (None, None, True),
+    ],
+    ids=["behind from here too", "was stuck", "explains", "unknown"],
+)
+def test_a_simpler_law_that_free_windows_leave_behind_is_not_looked_for_as_one_trajectory(elsewhere, from_here, ties):
+    laws = {"stribeck": Stribeck, "coulomb_joint": CoulombJoint}
+    final, plain = Model(frozenset({"stribeck"}), cost=110.0), frozenset({"coulomb_joint"})
+    answers = [] if from_here is None else [Model(plain, cost=from_here, tied=False, misfit=1.4)]
+    tied = Model(plain, cost=150.0)
+    search = Search(Bench(*answers, *([tied] if ties else [])))
+    search.bench.laws = laws
+    search.bench.effects = lambda trial: {"stribeck": Stribeck()}
+    search.known[final.names, False] = Model(final.names, cost=100.0, tied=False)
+    if elsewhere is not None:
+        search.known[plain, False] = elsewhere
+    found = search.simplified(final, "stribeck", "coulomb_joint")
+    assert found.tied == ties
+    assert search.bench.asked == [(plain, False)] * len(answers) + [(plain, True)] * ties

@@ -286,13 +286,6 @@ class Search(Tried):
         near = [c for c in near if not self.ruled_out(final, frozenset(kept) | {c.name})]
         return [self._keep(self.joined({**kept, c.name: c.effect}, final)) for c in near]
 
-    def ruled_out(self, final: Trial, names: frozenset[str]) -> bool:
-        """Whether a model fell behind another on free windows already: tying them gives it nothing that it lacks there."""
-        own, other = self.known.get((final.names, False)), self.known.get((names, False))
-        if own is None or other is None or not other.done:
-            return False
-        return gain(other, own) > demanded(self.bench)
-
     def forward(self, start: Trial, steps: list[Step], least: float) -> list[Step]:
         """Add effects one by one, dropping those that become needless, until nothing helps any more.
 

@@ -10,7 +10,7 @@ from ..mechanics import AbstractEffect
 from ..parameters import specs, values, with_values
 from .candidates import Candidate
 from .cuts import cut_free
-from .evidence import demanded, significance
+from .evidence import demanded, explained, gain, significance
 from .memories import Member
 from .workbench import PATIENCE, Trial, Workbench, adequate, strengths
 
@@ -197,10 +197,23 @@ class Tried:
         effects = self.bench.effects(final)
         shared = {n: v for n, v in values(effects.pop(name)).items() if n in specs(self.bench.laws[other]())}
         effects[other] = with_values(self.bench.laws[other](), shared)
+        names = frozenset(effects)
+        if final.tied and self.ruled_out(final, names) and not explained(self.known[names, False]):
+            # It was left behind from elsewhere. If it is from here as well, one trajectory need not be looked for.
+            apart = self._keep(self.bench.fit(effects, self.loosened(final), tied=False, patience=WHOLE))
+            if self.ruled_out(final, names):
+                return apart
         trial = self._keep(self.bench.fit(effects, final, tied=final.tied, patience=WHOLE))
         if final.tied and not trial.done and trial.misfit > STUCK * final.misfit:
             return self._keep(self.bench.fit(effects, final, tied=False, patience=WHOLE))
         return trial
+
+    def ruled_out(self, final: Trial, names: frozenset[str]) -> bool:
+        """Whether a model fell behind another on free windows already: tying them gives it nothing that it lacks there."""
+        own, other = self.known.get((final.names, False)), self.known.get((names, False))
+        if own is None or other is None or not other.done:
+            return False
+        return gain(other, own) > demanded(self.bench)
 
     def placed(self, trial: Trial, member: Member, *, tied: bool, patience: int = PATIENCE) -> Trial:
         """The model with a law of a family with internal states in it, in place of those it takes the place of."""
