@@ -303,8 +303,9 @@ def _correlation(windows: Windows, predicted: np.ndarray) -> float:
 
 def correlation_length(residual: np.ndarray) -> float:
     """Integrated autocorrelation of a residual (W, M) along its rows up to the first zero, in samples, at least 1."""
-    energy = max(float(np.sum(residual**2)), 1e-300)
-    lags = [float(np.sum(residual[:, k:] * residual[:, :-k])) / energy for k in range(1, residual.shape[1] // 2)]
+    with np.errstate(over="ignore", invalid="ignore"):  # what has run away misses by more than a square can hold
+        energy = max(float(np.sum(residual**2)), 1e-300)
+        lags = [float(np.sum(residual[:, k:] * residual[:, :-k])) / energy for k in range(1, residual.shape[1] // 2)]
     first = next((k for k, rho in enumerate(lags) if rho <= 0.0), len(lags))
     return max(1.0, 1.0 + 2.0 * sum(lags[:first]))
 
