@@ -1,0 +1,154 @@
+"""Random records of joints nobody has in a laboratory: from instrument size to machine size, seldom or often sampled.
+
+A stranger is a laboratory rig of `rigs`, drawn from wider ranges (damping, play, drive, strengths from barely visible to
+dominant), measured with an encoder of its own on each side, and then enlarged or reduced by similarity. With time, angle and
+inertia multiplied by a, g and m the equation of motion keeps its form if torques grow by m g / a^2: an exact simulation of the
+rig is one of the stranger. Only sin(y) does not follow an angle's scale: joints with gravity keep their angles.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from tests.independent.generator import measure, simulate_truth
+from tests.independent.rigs import SIGNED, STRENGTHS, Rig, make_excitation
+
+# name -> parameter -> powers of inertia m, angle g and time a in its unit
+_TORQUE, _STIFFNESS, _DAMPING, _SPEED = (1, 1, -2), (1, 0, -2), (1, 0, -1), (0, 1, -1)
+_ONE, _ANGLE, _RATE = (0, 0, 0), (0, 1, 0), (0, 0, -1)
+UNITS = {
+    "gravity": {"G": _TORQUE},
+    "preload": {"T0": _TORQUE},
+    "gap_spring": {"k1": _STIFFNESS},
+    "asymmetric_gap": {"z0": _ANGLE},
+    "asymmetric_stiffness": {"a": _ONE},
+    "cubic_stiffness": {"k3": (1, -2, -2)},
+    "contact_damping": {"cc": _DAMPING},
+    "hunt_crossley": {"chi": (1, -1, -1)},
+    "coulomb_joint": {"Tc": _TORQUE},
+    "stribeck": {"Tc": _TORQUE, "Ts": _TORQUE, "vs": _SPEED},
+    "coulomb_ground": {"Tc": _TORQUE},
+    "quadratic_drag": {"q": (1, -1, 0)},
+    "torque_ripple": {"A": _TORQUE, "N": (0, -1, 0), "phi": _ONE},
+    "dahl": {"sigma": _STIFFNESS, "Fc": _TORQUE},
+    "lugre": {"sigma0": _STIFFNESS, "sigma1": _DAMPING, "Fc": _TORQUE, "Fs": _TORQUE, "vs": _SPEED},
+    "bouc_wen": {"sigma": _STIFFNESS, "Fc": _TORQUE, "n": _ONE, "beta": _ONE},
+    "flexible_link": {"J2": (1, 0, 0), "k2": _STIFFNESS, "c2": _DAMPING},
+    "gap_drift": {"r": _RATE},
+    "stiffness_drift": {"r": _RATE},
+    "sensor_delay": {"tau": (0, 0, 1)},
+    "sensor_gain": {"g": _ONE},
+    "unknown_disturbance": {"A": _TORQUE, "w": _RATE, "phi": _ONE},
+    "speed_stiffness": {"s": (1, -1, -1)},
+}
+# name -> the parameters that are its size; the others are its shape
+_SIZES = {
+    "stribeck": ("Tc", "Ts"), "dahl": ("sigma", "Fc"), "lugre": ("sigma0", "sigma1", "Fc", "Fs"), "bouc_wen": ("sigma", "Fc"),
+    "flexible_link": ("J2", "k2", "c2"),
+}  # fmt: skip
+RUBBING = ("coulomb_joint", "stribeck", "dahl", "lugre", "bouc_wen")
+SHAPES = (
+    (125.0, 5000), (200.0, 6000), (250.0, 10000), (500.0, 5000), (500.0, 15000), (1000.0, 10000), (1000.0, 20000),
+    (2000.0, 20000),
+)  # fmt: skip
+"""Rates [Hz] and lengths [samples]: few, so that a study compiles few programs; what they are to a joint is left to its scale."""
+RATES, DURATIONS = (160.0, 2500.0), (8.0, 60.0)
+"""The same as a laboratory's joint would see them [Hz, s]: 16 to 250 samples in a period in contact."""
+TOUCHES, DRAWS = 0.03, 100
+"""Share of the time that a link must touch each side, or the joint is drawn again: what never touches tells nothing."""
+
+
+@dataclass(frozen=True)
+class Stranger:
+    """A record t [s], x, z [rad] as measured, with its answer: the rig, its effects' values, and how it was made."""
+
+    rig: Rig
+    values: dict[str, dict[str, float]]
+    seen: dict[str, np.ndarray]
+    kind: str
+    noise: float
+    step: float | None
+
+
+@dataclass(frozen=True)
+class Scale:
+    """How much larger inertia, angle and time are than in the laboratory."""
+
+    inertia: float = 1.0
+    angle: float = 1.0
+    time: float = 1.0
+
+    def of(self, powers: tuple[int, int, int]) -> float:
+        """The factor of a quantity with these powers in its unit."""
+        return float(self.inertia ** powers[0] * self.angle ** powers[1] * self.time ** powers[2])
+
+    def rig(self, rig: Rig) -> Rig:
+        """The joint, scaled."""
+        return Rig(rig.inertia * self.inertia, rig.backlash * self.angle, rig.stiffness * self.of(_STIFFNESS),
+                   rig.damping * self.of(_DAMPING))  # fmt: skip
+
+    def values(self, values: dict[str, dict[str, float]]) -> dict[str, dict[str, float]]:
+        """Effects' values, scaled."""
+        return {name: {k: v * self.of(UNITS[name][k]) for k, v in of.items()} for name, of in values.items()}
+
+
+def make_stranger(rng, hidden: tuple[str, ...], kind: str, noise: float = 1.0) -> Stranger:
+    """A stranger that hides ``hidden`` under an excitation of ``kind``; ``noise`` multiplies what its encoders have."""
+    slow, rate, duration = _clock(rng)
+    for _ in range(DRAWS):
+        rig = _rig(rng)
+        values = {name: _strength(rng, name) for name in hidden}
+        # The drive follows the play, within what a servo does.
+        size = float(np.clip(rig.backlash / 0.025, 0.5, 1.6) * rng.uniform(0.7, 1.4))
+        truth = simulate_truth(rig, values, make_excitation(rng, kind, duration, scale=size), rate, duration)
+        if all(np.mean(truth["contact"] == side) > TOUCHES for side in (-1, 1)):
+            break
+    else:
+        raise RuntimeError(f"no joint with {', '.join(hidden) or 'nothing'} met both sides of its play in {DRAWS} draws")
+    sigma_z = noise * np.exp(rng.uniform(np.log(1e-5), np.log(1e-4)))
+    sigma_x = sigma_z * np.exp(rng.uniform(np.log(0.4), np.log(2.5)))
+    # A cheap encoder: its count is what limits it.
+    step = float(sigma_z * rng.uniform(2.0, 6.0)) if rng.random() < 1.0 / 3.0 else None
+    seen = measure(truth, rng, sigma_x, sigma_z, step)
+    scale = Scale(*(float(10.0 ** rng.uniform(-w, w)) for w in (2.0, 0.0 if "gravity" in hidden else 0.5)), slow)
+    if "torque_ripple" in hidden:  # as many teeth as a drive has
+        scale = Scale(scale.inertia, min(scale.angle, values["torque_ripple"]["N"] / 5.0), scale.time)
+    grown = {"t": seen["t"] * scale.time, "x": seen["x"] * scale.angle, "z": seen["z"] * scale.angle}
+    return Stranger(scale.rig(rig), scale.values(values), grown, kind, sigma_z * scale.angle,
+                    None if step is None else step * scale.angle)  # fmt: skip
+
+
+def _clock(rng) -> tuple[float, float, float]:
+    """How much slower than the laboratory a joint is, and the rate [Hz] and duration [s] of its record as seen from there."""
+    while True:
+        rate, samples = SHAPES[int(rng.integers(len(SHAPES)))]
+        slow = float(10.0 ** rng.uniform(-0.5, 0.5))
+        if RATES[0] <= rate * slow <= RATES[1] and DURATIONS[0] <= samples / (rate * slow) <= DURATIONS[1]:
+            return slow, rate * slow, samples / (rate * slow)
+
+
+def _rig(rng) -> Rig:
+    """A laboratory's inertia and frequency, and any damping and play that such a drive can cross."""
+    inertia, omega = rng.uniform(2.6, 3.8), 2.0 * np.pi * rng.uniform(8.0, 11.5)
+    ratio, play = (float(np.exp(rng.uniform(*np.log(ends)))) for ends in ((0.01, 0.1), (0.008, 0.05)))
+    return Rig(inertia, play, inertia * omega**2, 2.0 * ratio * inertia * omega)
+
+
+def _strength(rng, name: str) -> dict[str, float]:
+    """The values of one effect: its size between a tenth and three times that of the laboratory, its shape as there."""
+    draw = {key: float(rng.uniform(*bounds)) for key, bounds in STRENGTHS[name].items()}
+    if name == "sensor_gain":
+        return {"g": 1.0 + (draw["g"] - 1.0) * _size(rng)}
+    size, sized = _size(rng), _SIZES.get(name, tuple(draw)[:1])
+    if name in SIGNED:
+        size *= float(rng.choice((-1.0, 1.0)))
+    if name == "asymmetric_gap":
+        size = float(np.clip(size, -1.5, 1.5))  # within the play
+    return {key: value * size if key in sized else value for key, value in draw.items()}
+
+
+def _size(rng) -> float:
+    """A tenth to three times, evenly on a logarithmic scale."""
+    return float(np.exp(rng.uniform(np.log(0.1), np.log(3.0))))
