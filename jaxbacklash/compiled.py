@@ -39,6 +39,11 @@ UNKEPT = (pickle.PicklingError, AttributeError, TypeError, ValueError, NotImplem
 """What arguments or programs that cannot be written down raise."""
 
 
+MOST = 24
+"""Programs of one function that a process holds at a time, more than one record ever asks for: the rest is read again where it is
+asked for again. A process that goes through many kinds of records would run out of room for code otherwise."""
+
+
 class _Foreign(Exception):
     """The arguments hold code whose text is not part of a program's name, like a user's own law."""
 
@@ -69,14 +74,16 @@ def kept_jit(function: Callable[..., Any]) -> Callable[..., Any]:
         try:
             with lock:
                 mine = key not in programs
-                coming = programs.setdefault(key, Future())
+                coming = programs[key] = Future() if mine else programs.pop(key)  # the one used last stands last
+                for old in [k for k in programs if programs[k].done()][: max(len(programs) - MOST, 0)]:
+                    del programs[old]
         except TypeError:  # a fixed part that cannot be told from others
             return jitted, []
         if mine:  # another thread that asks for the same program waits for this one
             try:
                 coming.set_result(_find(function, args, kinds, folder) or jitted)
             except BaseException as error:
-                del programs[key]
+                programs.pop(key, None)
                 coming.set_exception(error)
                 raise
         return coming.result(), arrays

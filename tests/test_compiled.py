@@ -80,6 +80,19 @@ def slow(traced: list[str], fails: list[BaseException]):
     return kept_jit(work)
 
 
+def test_a_process_holds_so_many_programs_and_reads_the_others_again(cache, monkeypatch):
+    monkeypatch.setattr(compiled, "MOST", 3)
+    traced: list[str] = []
+    work = process(traced)
+    for size in (2, 3, 4, 2, 5, 6):
+        work(None, np.arange(float(size)), None, 2)
+    assert len(work.programs) <= compiled.MOST + 1
+    count = len(traced)
+    assert float(work(None, np.arange(2.0), None, 2)["sum"]) == 1.0  # it was used again, later than those of 3 and 4
+    assert float(work(None, np.arange(3.0), None, 2)["sum"]) == 5.0  # its turn was over: it comes from its file
+    assert len(traced) == count
+
+
 def test_threads_that_ask_for_the_same_program_make_it_once(cache):
     traced: list[str] = []
     call = slow(traced, [])
