@@ -93,9 +93,10 @@ class AbstractEffect(eqx.Module):
     yields: ClassVar[dict[str, str]] = {}
 
     @classmethod
-    def guesses(cls, system: Any) -> list[AbstractEffect]:
+    def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
         """Points from which a fit of this effect to a joint like ``system`` may start, the likeliest first.
 
+        ``motion`` is that of the record it is to be found in, where there is one: arrays t [s], y, dy, x, dx [rad, rad/s].
         The default is the null value, or a small strength where the null leaves shape parameters undetermined.
         """
         described = {f.name: f.metadata["spec"] for f in dataclasses.fields(cls) if "spec" in f.metadata}
@@ -104,7 +105,7 @@ class AbstractEffect(eqx.Module):
         return [cls(**strengths)]
 
     @classmethod
-    def in_place_of(cls, other: AbstractEffect) -> list[AbstractEffect]:
+    def in_place_of(cls, other: AbstractEffect, motion: Any | None = None) -> list[AbstractEffect]:
         """Points from which a fit may start where this law takes the place of a fitted one of its ``family``; none: `guesses`."""
         return []
 

@@ -16,7 +16,7 @@ from jaxbacklash.system import System
 def bench():
     """No effect in the model yet, and a quick look that is told what to find."""
     laws = {"dahl": Dahl, "lugre": Lugre}
-    return SimpleNamespace(laws=laws, quick=SimpleNamespace(blind=False), effects=lambda trial: {})
+    return SimpleNamespace(laws=laws, quick=SimpleNamespace(blind=False, motion=None), effects=lambda trial: {})
 
 
 @pytest.mark.parametrize(("ahead", "first"), [(0.5, "dahl"), (0.9, "dahl"), (1.1, "lugre"), (-1.0, "dahl")])

@@ -34,7 +34,7 @@ class Bench:
     def __init__(self, *answers: Model) -> None:
         self.answers, self.asked = list(answers), []
         self.laws = {name: SimpleNamespace(states=(), absorbs=(), slides=False) for name in ("gravity", "preload")}
-        self.outright = ()
+        self.outright, self.slowest = (), 0.0
 
     def effects(self, trial):
         return dict.fromkeys(trial.names, "as fitted")
@@ -208,7 +208,7 @@ def test_a_law_is_reduced_to_the_simpler_one_that_does_as_well(monkeypatch):
     significant(monkeypatch, 100.0)
     monkeypatch.setattr("jaxbacklash.criticism.search.gain", lambda before, after: before.criterion - after.criterion)
     at = {"bound": False}
-    monkeypatch.setattr("jaxbacklash.criticism.search.shapeless", lambda trial, name: at["bound"])
+    monkeypatch.setattr("jaxbacklash.criticism.search.shapeless", lambda trial, name, slowest: at["bound"])
     rich = Model(frozenset({"stribeck"}), cost=100.0, free=("backlash", "Tc", "Ts"), tied=False)
     plain = Model(frozenset({"coulomb_joint"}), cost=100.4, free=("backlash", "Tc"), tied=False)
     search = Search(Bench())
@@ -332,3 +332,20 @@ def test_a_simpler_law_that_free_windows_leave_behind_is_not_looked_for_as_one_t
     found = search.simplified(final, "stribeck", "coulomb_joint")
     assert found.tied == ties
     assert search.bench.asked == [(plain, False)] * len(answers) + [(plain, True)] * ties
+
+
+def test_a_law_whose_shape_is_not_seen_gives_way_to_a_simpler_one_that_promised_little(monkeypatch):
+    monkeypatch.setattr("jaxbacklash.criticism.search.shapeless", lambda trial, name, slowest: at["bound"])
+    at = {"bound": True}
+    final = Model(frozenset({"torque_ripple"}), cost=100.0, free=("backlash", "A", "N", "phi"))
+    promises = {"torque_ripple": (900.0, 3), "preload": (100.0, 1), "gravity": (1.0, 1), "stribeck": (0.5, 3)}
+    ranking = tuple(SimpleNamespace(name=n, gain=g, parameters=p, effect=n) for n, (g, p) in promises.items())
+    search = Search(Bench())
+    laws = {n: Law(states=(), absorbs=(), family=None, torque=None, reshape=None) for n in promises}
+    search.bench.laws = laws
+    monkeypatch.setattr("jaxbacklash.criticism.search.families", lambda bench: {})
+    steps = [Step(Model(frozenset(), cost=1000.0), None, (), ranking), Step(final, "torque_ripple", (), ())]
+    monkeypatch.setattr(search, "joined", lambda effects, before: Model(frozenset(effects), cost=100.0))
+    assert [sorted(t.names) for t in search.instead(steps, "torque_ripple")] == [["preload"], ["gravity"]]
+    at["bound"] = False
+    assert not list(search.instead(steps, "torque_ripple"))

@@ -39,7 +39,7 @@ def test_a_flexible_link_under_ten_times_the_noise_is_promised_and_found():
     record = noisier(record, 15.0, 4)
     bench, alone = trajectory(record, rig)
     law = bench.laws["flexible_link"]
-    unseen = bench.quick.evidence(alone.system, alone.free, law.guesses(alone.system))
+    unseen = bench.quick.evidence(alone.system, alone.free, law.guesses(alone.system, bench.quick.motion))
     fall, start = promises(bench, alone, law)[0]
     needed = GLIMPSED * demanded(bench)
     assert fall > needed > unseen

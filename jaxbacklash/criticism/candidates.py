@@ -54,7 +54,7 @@ def rank(bench: Workbench, trial: Trial, names: Iterable[str] | None = None) -> 
 
 def shaped(bench: Workbench, trial: Trial, name: str) -> AbstractEffect:
     """The law at its null strength, at the likeliest of the shapes it may have."""
-    guesses = bench.laws[name].guesses(trial.system)
+    guesses = bench.laws[name].guesses(trial.system, bench.quick.motion)
     guess = bench.quick.choose(trial.system, trial.free, guesses)[0]
     described = specs(guess)
     return with_values(guess, {n: float(described[n].null or 0.0) for n in strengths(guess)})

@@ -51,16 +51,19 @@ def standard_errors(trial: Trial) -> np.ndarray:
     return np.asarray(errors * np.sqrt(max(1.0, trial.misfit**2) * trial.correlation))
 
 
-def shapeless(trial: Trial, name: str) -> bool:
-    """Whether a shape of an effect is not determined: at its bound, or its standard error exceeds half of its value.
+def shapeless(trial: Trial, name: str, slowest: float = 0.0) -> bool:
+    """Whether a shape of an effect is not determined: at its bound, uncertain by more than half of its value, or a speed below
+    the ``slowest`` [rad/s] that the record tells from rest.
 
-    What such a law adds to a simpler one that it contains acts where the record shows nothing.
+    What such a law adds to a simpler one that it contains acts where the record shows nothing. Near rest it acts on the noise: a
+    link that sticks tightly lets the base motion follow its own noise more freely, which looks like evidence.
     """
     errors = standard_errors(trial)
     described, found = specs(trial.system.effects[name]), values(trial.system.effects[name])
     shapes = {n: s for n, s in described.items() if s.null is None and not s.fixed and f"{name}.{n}" in trial.free}
     return any(
-        found[n] <= s.lower * (1.0 + 1e-6) or found[n] >= s.upper * (1.0 - 1e-6)
+        (s.unit == "rad/s" and found[n] < slowest)
+        or found[n] <= s.lower * (1.0 + 1e-6) or found[n] >= s.upper * (1.0 - 1e-6)
         or errors[trial.free.index(f"{name}.{n}")] > MOST_UNCERTAIN * abs(found[n])
         for n, s in shapes.items()
     )  # fmt: skip

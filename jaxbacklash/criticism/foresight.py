@@ -89,10 +89,10 @@ class Foresight:
         if friction is not None:
             bare = System(base.system.inertia, base.system.contact, base.system.damper, {}, base.system.observed)
             for names in families(self.bench).values():
-                tune(quick, bare, base.free, laws[names[0]].guesses(bare))
+                tune(quick, bare, base.free, laws[names[0]].guesses(bare, quick.motion))
         for law in laws.values():
             if law.states and not law.family:
-                own_torques(law.guesses(base.system), base.system, quick.motion)
+                own_torques(law.guesses(base.system, quick.motion), base.system, quick.motion)
 
     def _one_more(self, base: Trial, name: str) -> tuple[Problem, tuple[str, ...]]:
         return self.bench.problem({name: self.bench.laws[name].guesses(base.system)[0]}, base.system)

@@ -62,7 +62,8 @@ def members(
         if name == kin:
             continue
         law = bench.laws[name]
-        variants = law.guesses(system) if kin is None else law.in_place_of(trial.system.effects[kin]) or law.guesses(system)
+        instead = [] if kin is None else law.in_place_of(trial.system.effects[kin], bench.quick.motion)
+        variants = instead or law.guesses(system, bench.quick.motion)
         tuned = tune(bench.quick, system, free, variants)
         ahead = lead(bench.quick, free, tuned, system, rivals)
         least = -demanded(bench) if kin else demanded(bench)

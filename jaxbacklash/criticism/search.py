@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -193,7 +193,8 @@ class Search(Tried):
         laws = [law for name, law in self.bench.laws.items() if law.states and not law.family and name not in trial.names]
 
         def seen(known: np.ndarray | None = None) -> bool:
-            evidence = [self.bench.quick.evidence(trial.system, trial.free, law.guesses(trial.system), known) for law in laws]
+            quick, here = self.bench.quick, trial.system
+            evidence = [quick.evidence(here, trial.free, law.guesses(here, quick.motion), known) for law in laws]
             return max(evidence, default=0.0) > GLIMPSED * demanded(self.bench)
 
         return seen() and (not trial.tied or seen(own_rest(self.bench, trial)))
@@ -263,13 +264,13 @@ class Search(Tried):
                 richer = final if simpler.tied == final.tied else self.loosened(final)
                 if gain(simpler, richer) >= demanded(self.bench):
                     simpler = self.shaken(simpler)
-                if gain(simpler, richer) < demanded(self.bench) or shapeless(final, name):
+                if gain(simpler, richer) < demanded(self.bench) or shapeless(final, name, self.bench.slowest):
                     settled, dropped = self.prune(self.settle(simpler))
                     return self.reduced([*steps, Step(settled, other, (name, *dropped), ())])
         return steps
 
-    def instead(self, steps: list[Step], name: str) -> list[Trial]:
-        """Models with another effect in the place of one, from the windows of the model kept.
+    def instead(self, steps: list[Step], name: str) -> Iterator[Trial]:
+        """One by one, models with another effect in the place of one, from the windows of the model kept.
 
         A law that does as well needs no other motion than that. Simpler laws that one contains were tried by `reduced`.
         """
@@ -278,13 +279,17 @@ class Search(Tried):
         ranking = next((s.ranking for s in steps if s.trial.names == frozenset(kept) and s.ranking), None)
         if ranking is None:
             ranking = tuple(rank(self.bench, self.bench.fit(kept, final, patience=10)))
-        own = next((c.gain for c in ranking if c.name == name), 0.0)
-        near = [c for c in ranking if c.name not in final.names and c.gain > CLOSE * own][:2]
+        own = next((c for c in ranking if c.name == name), None)
+        near = [c for c in ranking if c.name not in final.names and c.gain > CLOSE * (own.gain if own else 0.0)][:2]
+        if own and not self.bench.laws[name].states and shapeless(final, name, self.bench.slowest):
+            # Its shape is not seen: any simpler law may be what it stands in for, whatever it promised far from here.
+            near += [c for c in ranking if c.name not in final.names and c not in near and c.parameters < own.parameters]
         near = [c for c in near if c.name not in self.bench.laws[name].absorbs]
         if name in [n for names in families(self.bench).values() for n in names]:
             near = [c for c, may in zip(near, may_replace(self.bench, final, name, [c.effect for c in near])) if may]
         near = [c for c in near if not self.ruled_out(final, frozenset(kept) | {c.name})]
-        return [self._keep(self.joined({**kept, c.name: c.effect}, final)) for c in near]
+        for c in near:
+            yield self._keep(self.joined({**kept, c.name: c.effect}, final))
 
     def forward(self, start: Trial, steps: list[Step], least: float) -> list[Step]:
         """Add effects one by one, dropping those that become needless, until nothing helps any more.
@@ -463,7 +468,7 @@ class Search(Tried):
         for name, law in self.bench.laws.items():
             if not law.states or law.family or name in start.names or any(t.misfit < NOISE_FLOOR for t in found):
                 continue
-            guesses = law.guesses(start.system)
+            guesses = law.guesses(start.system, self.bench.quick.motion)
             if start.misfit > FAR and self.bench.quick.share(start.system, start.free, guesses) < GLIMPSE:
                 continue
             self.progress(f"trying {name}", 0.6)

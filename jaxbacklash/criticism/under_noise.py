@@ -41,7 +41,7 @@ def promises(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> list[
     Fall of the sum of squares that each promises at its best size, in units of the noise, and the law of that size to start a
     fit from
     """
-    guesses = law.guesses(trial.system)
+    guesses = law.guesses(trial.system, bench.quick.motion)
     problem, unknowns = as_it_ended(bench, trial)
     windows = bench.windows
     applied = np.asarray(windows.force)

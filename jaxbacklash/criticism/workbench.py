@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import equinox as eqx
 import numpy as np
@@ -24,6 +25,7 @@ from ..fitting.windows import Layout, Windows
 from ..mechanics import AbstractEffect, canonical_name, catalogue
 from ..parameters import specs, values, with_values
 from ..records import Record
+from ..signals import noise_of_speed
 from ..system import System
 from .along_motion import own_states
 from .quick_look import QuickLook
@@ -100,6 +102,13 @@ class Workbench:
         self.static = {n: c for n, c in self.laws.items() if not c.states}
         self.quick = QuickLook(record)
         self.fits = 0
+
+    @cached_property
+    def slowest(self) -> float:
+        """Speed [rad/s] below which the record cannot tell motion from rest; zero where the motion is not in the record."""
+        if self.quick.blind:
+            return 0.0
+        return noise_of_speed(self.record.t, self.record.channels[self.record.observed_name], self.layout.noise[0])
 
     def problem(
         self, effects: dict[str, AbstractEffect], joint: System, *, extra: Iterable[str] = (),

@@ -13,6 +13,7 @@ import jax.numpy as jnp
 
 from ..mechanics import AbstractEffect, Instant
 from ..parameters import Scalar, param
+from .scales import sliding_speeds
 
 
 def smooth_sign(v: Scalar, width: Scalar) -> Scalar:
@@ -68,15 +69,15 @@ class Stribeck(AbstractEffect):
 
     Tc: Scalar = param(unit="N m", null=0.0, lower=0.0, scale=1.0)
     Ts: Scalar = param(unit="N m", null=0.0, lower=0.0, scale=1.0)
-    vs: Scalar = param(unit="rad/s", default=0.1, lower=1e-3, scale=0.1)
+    vs: Scalar = param(unit="rad/s", default=0.1, lower=1e-6, scale=0.1)
     width: Scalar = param(unit="rad/s", default=1e-3, lower=0.0, fixed=True, label="regularisation of the sign")
     slides: ClassVar[bool] = True
     absorbs: ClassVar[tuple[str, ...]] = ("coulomb_joint",)
     family: ClassVar[str | None] = "dry friction"
 
     @classmethod
-    def guesses(cls, system: Any) -> list[AbstractEffect]:
-        return [cls(1.0, 2.0, vs) for vs in (0.1, 0.03, 0.3)]
+    def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
+        return [cls(1.0, 2.0, vs) for vs in sliding_speeds(motion)]
 
     def dry(self, now: Instant) -> Scalar:
         return self.Tc + (self.Ts - self.Tc) * jnp.exp(-((now.dz / jnp.maximum(self.vs, 1e-6)) ** 2))

@@ -13,16 +13,10 @@ import jax.numpy as jnp
 
 from ..mechanics import AbstractEffect, Instant
 from ..parameters import Scalar, param
+from .scales import natural_frequency, presliding, sliding_speeds
 
 FASTEST = 1000.0
 """Largest rate [1/s] at which a state follows. Met only in fast sliding, where the state has settled already."""
-
-
-def presliding(system: Any) -> tuple[float, ...]:
-    """Distances [rad] over which friction may give before it slips, in a joint like this one: parts of the play."""
-    if system.has_play:
-        return tuple(share * float(system.contact.backlash) for share in (0.08, 0.02, 0.3))
-    return 1e-3, 3e-3
 
 
 def slope_and_level(effect: AbstractEffect) -> list[tuple[float, float]]:
@@ -51,11 +45,11 @@ class Dahl(AbstractEffect):
     family: ClassVar[str | None] = "hysteresis"
 
     @classmethod
-    def guesses(cls, system: Any) -> list[AbstractEffect]:
+    def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
         return [cls(Fc=1.0, sigma=1.0 / distance) for distance in presliding(system)]
 
     @classmethod
-    def in_place_of(cls, other: AbstractEffect) -> list[AbstractEffect]:
+    def in_place_of(cls, other: AbstractEffect, motion: Any | None = None) -> list[AbstractEffect]:
         return [cls(Fc=level, sigma=slope) for slope, level in slope_and_level(other)]
 
     def torque(self, now: Instant) -> Scalar:
@@ -83,20 +77,21 @@ class Lugre(AbstractEffect):
     sigma2: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, fixed=True, label="viscous part, as the damper")
     Fc: Scalar = param(unit="N m", null=0.0, lower=0.0, scale=1.0)
     Fs: Scalar = param(unit="N m", default=0.0, lower=0.0, scale=1.0)
-    vs: Scalar = param(unit="rad/s", default=0.1, lower=1e-3, scale=0.1)
+    vs: Scalar = param(unit="rad/s", default=0.1, lower=1e-6, scale=0.1)
     states: ClassVar[tuple[str, ...]] = ("s",)
     family: ClassVar[str | None] = "hysteresis"
 
     @classmethod
-    def guesses(cls, system: Any) -> list[AbstractEffect]:
-        return [cls(sigma0=1.0 / d, sigma1=1e-3 / d, Fc=1.0, Fs=1.5, vs=0.1) for d in presliding(system)]
+    def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
+        relaxing, speed = 0.06 / natural_frequency(system), sliding_speeds(motion)[0]
+        return [cls(sigma0=1.0 / d, sigma1=relaxing / d, Fc=1.0, Fs=1.5, vs=speed) for d in presliding(system)]
 
     @classmethod
-    def in_place_of(cls, other: AbstractEffect) -> list[AbstractEffect]:
+    def in_place_of(cls, other: AbstractEffect, motion: Any | None = None) -> list[AbstractEffect]:
         return [
             cls(sigma0=slope, sigma1=1e-3 * slope, Fc=level, Fs=1.2 * level, vs=speed)
             for slope, level in slope_and_level(other)
-            for speed in (0.1, 0.03, 0.3)
+            for speed in sliding_speeds(motion)
         ]
 
     def torque(self, now: Instant) -> Scalar:
@@ -131,11 +126,11 @@ class BoucWen(AbstractEffect):
     family: ClassVar[str | None] = "hysteresis"
 
     @classmethod
-    def guesses(cls, system: Any) -> list[AbstractEffect]:
+    def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
         return [cls(1.0 / distance, 1.0, 1.5, 0.75) for distance in presliding(system)]
 
     @classmethod
-    def in_place_of(cls, other: AbstractEffect) -> list[AbstractEffect]:
+    def in_place_of(cls, other: AbstractEffect, motion: Any | None = None) -> list[AbstractEffect]:
         return [cls(slope, level, power, 0.75) for slope, level in slope_and_level(other) for power in (1.5, 1.1)]
 
     def torque(self, now: Instant) -> Scalar:

@@ -9,6 +9,10 @@ import numpy as np
 
 from ..mechanics import AbstractEffect, Instant
 from ..parameters import Scalar, param
+from .scales import orders
+
+LEAST_ORDER = 4.0
+"""Repetitions a turn below which a ripple cannot be told from gravity."""
 
 
 class Gravity(AbstractEffect):
@@ -50,14 +54,14 @@ class TorqueRipple(AbstractEffect):
     """
 
     A: Scalar = param(unit="N m", null=0.0, scale=1.0)
-    N: Scalar = param(unit="1", default=20.0, lower=4.0, scale=1.0)
+    N: Scalar = param(unit="1", default=20.0, lower=LEAST_ORDER, scale=1.0)
     phi: Scalar = param(unit="1", default=0.0, scale=0.1)
     port: ClassVar[str] = "ground"
 
     @classmethod
-    def guesses(cls, system: Any) -> list[AbstractEffect]:
+    def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
         # A link that swings by a tenth of a radian tells orders some fifteen apart; a phase is a sum of two.
-        return [cls(1.0, order, phase) for order in (20.0, 35.0, 50.0, 65.0, 80.0, 100.0, 8.0) for phase in (0.0, 0.5 * np.pi)]
+        return [cls(1.0, order, phase) for order in orders(motion, LEAST_ORDER) for phase in (0.0, 0.5 * np.pi)]
 
     def torque(self, now: Instant) -> Scalar:
         return self.A * jnp.sin(self.N * now.y + self.phi)

@@ -9,6 +9,11 @@ import numpy as np
 
 from ..mechanics import AbstractEffect, Instant
 from ..parameters import Scalar, param
+from .scales import natural_frequency
+
+LOWEST, HIGHEST, STEPS = 1.1, 7.0, 6
+"""Frequencies at which something behind the link may swing, in units of the link's own in contact: below that it swings with the
+joint as one, far above it is one with the link."""
 
 
 class FlexibleLink(AbstractEffect):
@@ -25,10 +30,10 @@ class FlexibleLink(AbstractEffect):
     port: ClassVar[str] = "ground"
 
     @classmethod
-    def guesses(cls, system: Any) -> list[AbstractEffect]:
+    def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
         # A tenth of the link's inertia on springs of a ladder of frequencies: the frequency is not seen at null.
-        small = 0.1 * float(system.inertia)
-        return [cls(small, small * w * w, 0.02 * small * w) for w in 2.0 * np.pi * np.geomspace(15.0, 60.0, 5)]
+        small, own = 0.1 * float(system.inertia), natural_frequency(system)
+        return [cls(small, small * w * w, 0.02 * small * w) for w in own * np.geomspace(LOWEST, HIGHEST, STEPS)]
 
     def scaled(self, factor: float) -> FlexibleLink:
         # A smaller inertia that swings at the same frequency, as well damped.

@@ -16,6 +16,7 @@ from .morlet import frequency_grid as frequency_grid
 from .morlet import scalogram as scalogram
 from .noise import noise_level as noise_level
 from .noise import noise_of_differences as noise_of_differences
+from .noise import noise_of_speed as noise_of_speed
 from .ridge import ridge as ridge
 from .smoothing import DEGREE as DEGREE
 from .smoothing import NEGLIGIBLE as NEGLIGIBLE

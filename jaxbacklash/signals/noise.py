@@ -41,6 +41,24 @@ def noise_level(t: np.ndarray, values: np.ndarray, *, window: float = 0.1) -> fl
     return float(np.sqrt(np.median(energy) / _chi2_median(freedom)))
 
 
+def noise_of_speed(t: np.ndarray, values: np.ndarray, noise: float, *, window: float = 0.1) -> float:
+    """Standard deviation of the rate of a smoothed signal that its noise alone makes: slower than that, motion is not told from
+    rest.
+
+    Parameters
+    ----------
+    t, values : uniform samples, shape (N,), t in s
+    noise : standard deviation of the noise on ``values``
+    window : length over which knot counts are chosen [s]
+
+    Returns
+    -------
+    standard deviation in the unit of ``values`` per second
+    """
+    alone = noise * np.random.default_rng(0).standard_normal(t.size)
+    return float(np.std(fit_spline(t, alone, t[0], window / choose_intervals(t, values, window))(t, 1)))
+
+
 def noise_of_differences(values: np.ndarray) -> float:
     """Standard deviation of the white noise on a signal with corners and jumps of slope, such as a contact force.
 
