@@ -334,8 +334,8 @@ def test_a_simpler_law_that_free_windows_leave_behind_is_not_looked_for_as_one_t
     assert search.bench.asked == [(plain, False)] * len(answers) + [(plain, True)] * ties
 
 
-def test_a_law_whose_shape_is_not_seen_gives_way_to_a_simpler_one_that_promised_little(monkeypatch):
-    monkeypatch.setattr("jaxbacklash.criticism.search.shapeless", lambda trial, name, slowest: at["bound"])
+def test_a_law_at_the_limit_of_its_shape_gives_way_to_a_simpler_one_that_promised_little(monkeypatch):
+    monkeypatch.setattr("jaxbacklash.criticism.search.at_a_bound", lambda trial, name: at["bound"])
     at = {"bound": True}
     final = Model(frozenset({"torque_ripple"}), cost=100.0, free=("backlash", "A", "N", "phi"))
     promises = {"torque_ripple": (900.0, 3), "preload": (100.0, 1), "gravity": (1.0, 1), "stribeck": (0.5, 3)}

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..fitting.estimates import MOST_UNCERTAIN
 from ..mechanics import AbstractEffect
-from ..parameters import specs, values
+from ..parameters import Spec, specs, values
 from .workbench import Trial, Workbench, strengths
 
 NOISE_FLOOR = 1.03
@@ -58,15 +58,25 @@ def shapeless(trial: Trial, name: str, slowest: float = 0.0) -> bool:
     What such a law adds to a simpler one that it contains acts where the record shows nothing. Near rest it acts on the noise: a
     link that sticks tightly lets the base motion follow its own noise more freely, which looks like evidence.
     """
-    errors = standard_errors(trial)
-    described, found = specs(trial.system.effects[name]), values(trial.system.effects[name])
-    shapes = {n: s for n, s in described.items() if s.null is None and not s.fixed and f"{name}.{n}" in trial.free}
+    errors, found = standard_errors(trial), values(trial.system.effects[name])
+    return at_a_bound(trial, name) or any(
+        (s.unit == "rad/s" and found[n] < slowest) or errors[trial.free.index(f"{name}.{n}")] > MOST_UNCERTAIN * abs(found[n])
+        for n, s in _shapes(trial, name).items()
+    )
+
+
+def at_a_bound(trial: Trial, name: str) -> bool:
+    """Whether a shape of an effect stands at the end of its range, where the law may be another's limit."""
+    found = values(trial.system.effects[name])
     return any(
-        (s.unit == "rad/s" and found[n] < slowest)
-        or found[n] <= s.lower * (1.0 + 1e-6) or found[n] >= s.upper * (1.0 - 1e-6)
-        or errors[trial.free.index(f"{name}.{n}")] > MOST_UNCERTAIN * abs(found[n])
-        for n, s in shapes.items()
-    )  # fmt: skip
+        found[n] <= s.lower * (1.0 + 1e-6) or found[n] >= s.upper * (1.0 - 1e-6) for n, s in _shapes(trial, name).items()
+    )
+
+
+def _shapes(trial: Trial, name: str) -> dict[str, Spec]:
+    """The free shape parameters of an effect: those that have no null value."""
+    described = specs(trial.system.effects[name])
+    return {n: s for n, s in described.items() if s.null is None and not s.fixed and f"{name}.{n}" in trial.free}
 
 
 def significance(trial: Trial, name: str) -> float:

@@ -11,7 +11,19 @@ import numpy as np
 from ..fitting.search import ADEQUATE, silent
 from ..mechanics import AbstractEffect
 from .candidates import Candidate, rank
-from .evidence import AS_WELL, NOISE_FLOOR, UNEXPLAINED, demanded, excess, explained, gain, measures_only, shapeless, significance
+from .evidence import (
+    AS_WELL,
+    NOISE_FLOOR,
+    UNEXPLAINED,
+    at_a_bound,
+    demanded,
+    excess,
+    explained,
+    gain,
+    measures_only,
+    shapeless,
+    significance,
+)  # fmt: skip
 from .memories import Member, families, may_replace, members
 from .tried import LOOSER, WHOLE, Tried
 from .tuning import apart
@@ -281,8 +293,8 @@ class Search(Tried):
             ranking = tuple(rank(self.bench, self.bench.fit(kept, final, patience=10)))
         own = next((c for c in ranking if c.name == name), None)
         near = [c for c in ranking if c.name not in final.names and c.gain > CLOSE * (own.gain if own else 0.0)][:2]
-        if own and not self.bench.laws[name].states and shapeless(final, name, self.bench.slowest):
-            # Its shape is not seen: any simpler law may be what it stands in for, whatever it promised far from here.
+        if own and not self.bench.laws[name].states and at_a_bound(final, name):
+            # As the limit of its shape it may stand in for any simpler law, whatever that promised far from here.
             near += [c for c in ranking if c.name not in final.names and c not in near and c.parameters < own.parameters]
         near = [c for c in near if c.name not in self.bench.laws[name].absorbs]
         if name in [n for names in families(self.bench).values() for n in names]:
