@@ -222,6 +222,9 @@ def test_a_law_is_reduced_to_the_simpler_one_that_does_as_well(monkeypatch):
     assert len(search.reduced([Step(rich, "stribeck", (), ())])) == 1
     at["bound"] = True
     assert len(search.reduced([Step(rich, "stribeck", (), ())])) == 2
+    stuck = replace(worse, misfit=1.1)
+    monkeypatch.setattr(search, "simplified", lambda final, name, other: stuck)
+    assert len(search.reduced([Step(rich, "stribeck", (), ())])) == 1
 
 
 def test_what_fell_behind_on_free_windows_is_not_tied(monkeypatch):

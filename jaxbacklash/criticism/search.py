@@ -276,7 +276,9 @@ class Search(Tried):
                 richer = final if simpler.tied == final.tied else self.loosened(final)
                 if gain(simpler, richer) >= demanded(self.bench):
                     simpler = self.shaken(simpler)
-                if gain(simpler, richer) < demanded(self.bench) or shapeless(final, name, self.bench.slowest):
+                # What leaves noise is not given up for what does not: the simpler one's search has stuck.
+                blind = shapeless(final, name, self.bench.slowest) and (explained(simpler) or not explained(final))
+                if gain(simpler, richer) < demanded(self.bench) or blind:
                     settled, dropped = self.prune(self.settle(simpler))
                     return self.reduced([*steps, Step(settled, other, (name, *dropped), ())])
         return steps
