@@ -34,7 +34,7 @@ class Bench:
     def __init__(self, *answers: Model) -> None:
         self.answers, self.asked = list(answers), []
         self.laws = {name: SimpleNamespace(states=(), absorbs=(), slides=False) for name in ("gravity", "preload")}
-        self.outright, self.slowest = (), 0.0
+        self.outright, self.slowest, self.is_cut = (), 0.0, False
 
     def effects(self, trial):
         return dict.fromkeys(trial.names, "as fitted")

@@ -61,8 +61,10 @@ class Tried:
         From there the whole trajectory may be in reach. If it is not, every model of the record is tied with these cuts from
         then on, so that they remain comparable.
         """
-        asked = free.names in self.asked or not self.dry(free)
-        ties = None if asked or self.bench.is_cut else cut_free(self.bench, free)
+        asked = free.names in self.asked or not self.dry(free) or self.bench.is_cut
+        if not asked and not free.done:  # windows that are still on their way are not where friction holds
+            free = self.finish(free)
+        ties = None if asked else cut_free(self.bench, free)
         self.asked.add(free.names)
         if ties is None:
             return None
@@ -104,7 +106,7 @@ class Tried:
                     return self._keep(start)
             if not before.tied:
                 trial = self._keep(self.bench.fit(effects, start))
-            elif names > before.names and self.promised(before, candidate) < 1.0:
+            elif names > before.names and self.promised(before, candidate) < 1.0 and not self.bench.is_cut:
                 # One search is enough: if the model before has stuck, an addition that does nothing else may bring it on.
                 return self._keep(self.bench.fit(effects, before, tied=True))
             else:
@@ -126,6 +128,11 @@ class Tried:
         its windows are let go first."""
         trial = self.bench.fit(effects, before, tied=True, patience=patience)
         better = trial.misfit < (STUCK if trial.done else 1.0) * before.misfit
+        if self.bench.is_cut and gain(before, trial) < demanded(self.bench):
+            # Where friction held the link, a search from a simpler model's windows ends near that: no gain there says nothing.
+            free = self._keep(self.bench.fit(self.bench.effects(trial), trial, patience=WHOLE))
+            again = self.bench.fit(self.bench.effects(free), free, tied=True, patience=WHOLE)
+            return min(trial, self.softly(again), key=lambda t: t.cost)
         if better and (trial.done or self.dry(trial)):
             return trial
         free = self._keep(self.bench.fit(effects, before, tied=False))
