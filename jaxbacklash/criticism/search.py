@@ -23,7 +23,7 @@ from .evidence import (
     measures_only,
     shapeless,
     significance,
-)  # fmt: skip
+)
 from .memories import Member, families, may_replace, members
 from .tried import LOOSER, WHOLE, Tried
 from .tuning import apart
