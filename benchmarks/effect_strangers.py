@@ -15,7 +15,6 @@ import json
 import multiprocessing
 import tempfile
 import time
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -89,10 +88,11 @@ def main() -> None:
     numbers = [2] if options.tiny else options.only if options.only is not None else range(options.records)
     with tempfile.TemporaryDirectory() as folder:
         for noise in options.noise[:1] if options.tiny else options.noise:
-            # Every few records a process of its own: compiled programs of many lengths and rates do not pile up.
-            with ProcessPoolExecutor(options.side_by_side, spawn, partial(start, brief=True), max_tasks_per_child=6) as pool:
-                jobs = [pool.submit(answered, options.work or Path(folder), n, noise, options.seed) for n in numbers]
-                rows = [job.result() for job in jobs]
+            # Every few records a process of its own: compiled programs of many lengths and rates do not pile up. (An executor
+            # of `concurrent.futures` that replaces its processes can wait for ever: CPython issue 115634.)
+            with spawn.Pool(options.side_by_side, partial(start, brief=True), maxtasksperchild=6) as pool:
+                one = partial(answered, options.work or Path(folder), noise=noise, seed=options.seed)
+                rows = list(pool.imap(one, numbers, chunksize=1))
             print(f"\nstrangers, noise x{noise:g}, seed {options.seed}\n{table(rows)}\n", flush=True)
 
 

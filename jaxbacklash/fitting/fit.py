@@ -22,7 +22,7 @@ from .score import Score, score
 from .search import search, silent
 from .setup import base_system, first_guess, free_names, make_problem
 from .shooting import Problem, Unknowns
-from .windows import LONGEST_PANEL, Layout, Windows, cut
+from .windows import LONGEST_PANEL, Layout, Windows, crossing_time, cut
 
 ABSOLUTE = ("force", "transmitted")
 """Kinds of record with a measured force, which need no inertia to tell a stiffness."""
@@ -174,7 +174,10 @@ def prepare(
     if system.contact is not None:
         # Thirty-two panels a period of the contact resonance keep the integration error a thousandth of an encoder's noise.
         omega = np.sqrt(float(system.contact.stiffness) / float(system.inertia))
-        longest = min(longest, max(2.0 * np.pi / max(omega, 1e-9) / (32.0 * finer), records[0].dt / 16.0))
+        period = 2.0 * np.pi / max(float(omega), 1e-9)
+        # A first guess of the play may be far too small, so that there is an end to what it may ask for.
+        crossing = min(crossing_time(r, float(system.contact.backlash), period / 16.0) for r in records)
+        longest = min(longest, max(min(period / (32.0 * finer), max(crossing, period / 256.0)), records[0].dt / 16.0))
     windows, layout = cut(records, shooting, longest_panel=longest, least=intervals)
     if system.observed == "T" and system.contact is not None:
         # Ties are of motion: the noise of a force counts as the motion that would make it in contact.

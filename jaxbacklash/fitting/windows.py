@@ -222,6 +222,23 @@ def observed_noise(record: Record) -> float:
     return min(noise, noise_of_differences(values)) if record.observed_name == "T" else noise
 
 
+def crossing_time(record: Record, play: float, span: float) -> float:
+    """Time [s] in which the fastest relative motion of a record crosses a play [rad]; infinite where there is none.
+
+    A panel finds the first edge that the link meets, so that none may hold both. ``span`` [s] is the time over which the
+    motion is differenced: short beside a period in contact, long enough that noise is no speed.
+    """
+    motion = record.channels.get("z", record.channels.get("y"))
+    base = record.channels.get("x")
+    if motion is None:  # of a link that is not seen, its base tells the pace
+        motion = base
+    elif base is not None and "z" not in record.channels:
+        motion = motion - base
+    apart = min(max(1, int(span / record.dt)), record.samples - 1)
+    fastest = float(np.max(np.abs(motion[apart:] - motion[:-apart]))) / (apart * record.dt)
+    return play / fastest if play > 0.0 and fastest > 0.0 else np.inf
+
+
 def _rows(values: np.ndarray, rows: int, length: int) -> np.ndarray:
     padded = np.zeros(rows * length)
     n = min(values.size, padded.size)
