@@ -14,10 +14,18 @@ def fit(rms, median):
 @pytest.mark.parametrize("names", [(), ("gravity",)])
 @pytest.mark.parametrize(("rms", "few"), [(1.02, False), (1.22, True)])
 def test_a_complete_model_that_misses_in_a_few_windows_says_so(names, rms, few):
-    final = SimpleNamespace(names=frozenset(names), misfit=1.01)
+    final = SimpleNamespace(names=frozenset(names), misfit=1.01, cost=0.5 * 20_000 * 1.01**2)
     verdict = judge_rest(final, [fit(30.0, 20.0), fit(rms, 1.01)])
     assert verdict.complete
     assert f"{rms:.3g} times the noise" in verdict.text
     assert ("in a few windows (the median window is off by 1.01 times the noise)" in verdict.text) == few
     assert all(name in verdict.text for name in names)
     assert verdict.text.endswith(".")
+
+
+@pytest.mark.parametrize(("freedom", "complete"), [(2_000, True), (8_000, True), (20_000, False), (80_000, False)])
+def test_a_long_record_tells_a_little_more_than_noise_from_noise(freedom, complete):
+    final = SimpleNamespace(names=frozenset(("cubic_stiffness",)), misfit=1.032, cost=0.5 * freedom * 1.032**2)
+    verdict = judge_rest(final, [fit(1.4, 1.3), fit(1.032, 1.03)])
+    assert verdict.complete == complete
+    assert ("noise explains" in verdict.text) != complete

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from ..fitting import Fit
 from .workbench import Trial
 
-NEAR_NOISE = 1.05
-"""Root of the reduced chi-square of a tied fit up to which what is left counts as noise, since the noise itself is estimated."""
+NEAR_NOISE, SIGMAS = 1.01, 3.0
+"""Root of the reduced chi-square up to which what is left counts as noise, since the noise itself is estimated, and how many
+standard deviations of that root may come on top: in 80 records of right models it did not exceed 1.013."""
+LITTLE_MORE = 1.1
+"""A misfit below this looks like noise, so that a verdict against it says what noise would leave."""
 
 
 @dataclass(frozen=True)
@@ -23,10 +27,18 @@ class Verdict:
         return "complete" if self.complete else "incomplete"
 
 
+def most_of_noise(trial: Trial) -> float:
+    r"""The largest root of the reduced chi-square that noise may leave: its standard deviation is :math:`1/\sqrt{2\nu}`, with
+    :math:`\nu` degrees of freedom."""
+    freedom = 2.0 * trial.cost / trial.misfit**2
+    return NEAR_NOISE + SIGMAS / math.sqrt(2.0 * max(freedom, 1.0))
+
+
 def judge_rest(final: Trial, fits: list[Fit]) -> Verdict:
     """Whether the last model leaves nothing but noise."""
     first, last = fits[0], fits[-1]
-    complete = final.misfit < NEAR_NOISE and last.score.median < 1.1
+    most = most_of_noise(final)
+    complete = final.misfit < most and last.score.median < 1.1
     named = ", ".join(sorted(final.names))
     left = "what is left is noise"
     if last.score.rms > 1.1:
@@ -44,5 +56,7 @@ def judge_rest(final: Trial, fits: list[Fit]) -> Verdict:
     else:
         text = f"Incomplete: the misfit is still {last.score.rms:.3g} times the noise"
         text += f" with {named} added" if named else ""
+        if most < final.misfit < LITTLE_MORE:
+            text += f" ({final.misfit:.3f} over the whole record, of which noise explains {most:.3f} at most)"
         text += ", and no effect in the catalogue explains the rest."
     return Verdict(bool(complete), text)
