@@ -23,6 +23,9 @@ from .system import System
 
 Array = Any
 
+MOST_FINER = 16
+"""A play is followed by panels so many times shorter than usual, and no more: a tiny one is hardly felt."""
+
 
 class Driven(eqx.Module):
     """What the solvers take as ``args``: systems and excitations travel as data, so that new numbers compile nothing."""
@@ -89,7 +92,7 @@ def simulate(
     y0, dy0 : start of the link [rad, rad/s]; default: with the base, at its speed
     t0 : start time [s]
     panels_per_sample : integration panels between samples (a panel is two Runge-Kutta steps); default: at most 1 ms
-        each, and at least 20 a period of the contact resonance
+        each, at least 20 a period of the contact resonance, and none so long that the link goes right through the play in it
     adaptive : use diffrax's adaptive Dopri8 with the smoothed corner, as a referee
     rtol, atol : tolerances of the referee
 
@@ -111,6 +114,9 @@ def simulate(
     else:
         every = panels_per_sample or default_panels(system, rate)
         times, states = _fixed(args, state, jnp.asarray(1.0 / rate), samples - 1, every, system.switches)
+        finer = every if panels_per_sample else crossing_panels(system, drive, times, states, rate, every)
+        if finer > every:
+            times, states = _fixed(args, state, jnp.asarray(1.0 / rate), samples - 1, finer, system.switches)
     at = jax.vmap(drive.at)(times)
     observed = jax.vmap(system.output)(times, states, at)
     return Trajectory(times, states, at, observed)
@@ -123,6 +129,18 @@ def default_panels(system: System, rate: float) -> int:
         omega = float(np.sqrt(np.maximum(system.contact.stiffness, 1e-12) / system.inertia))
         longest = min(longest, 2.0 * np.pi / omega / 20.0)
     return max(1, int(np.ceil(1.0 / rate / longest - 1e-9)))
+
+
+def crossing_panels(system: System, drive: AbstractExcitation, times: Array, states: Any, rate: float, every: int) -> int:
+    """Panels between samples, ``every`` at least, so that none holds both edges of the play: a panel finds the first it meets."""
+    play = getattr(system.contact, "backlash", None)
+    speeds = states[1] - jax.vmap(drive.at)(times).dx
+    if play is None or any(isinstance(v, jax.core.Tracer) for v in (play, speeds)):
+        return every
+    fastest = float(np.max(np.abs(speeds), initial=0.0, where=np.isfinite(speeds)))
+    if not (float(play) > 0.0 and fastest > 0.0):
+        return every
+    return int(min(max(every, np.ceil(fastest / (rate * float(play)))), MOST_FINER * every))
 
 
 @eqx.filter_jit

@@ -14,12 +14,17 @@ import pytest
 from jaxbacklash import simulate
 from jaxbacklash.effects import CoulombGround, CoulombJoint, FlexibleLink
 from jaxbacklash.excitation import Harmonic
+from jaxbacklash.fitting.fit import prepare
+from jaxbacklash.fitting.setup import make_problem
+from jaxbacklash.fitting.shooting import Unknowns, predictions
+from jaxbacklash.fitting.windows import cut
 from jaxbacklash.mechanics import Drive
 from jaxbacklash.models import base_motion_joint, free_axis, linear_oscillator
 from jaxbacklash.parameters import ravel, specs, unravel, values, with_values
+from jaxbacklash.records import Record
 from jaxbacklash.solvers import run_panels
 from tests.independent import kernel
-from tests.independent.generator import _COLUMNS, _GRID, _pieces, make_excitation, pack
+from tests.independent.generator import _COLUMNS, _GRID, _pieces, make_excitation, pack, simulate_truth
 from tests.independent.motions import SteppedSine
 from tests.independent.rigs import Excitation, Rig
 
@@ -180,3 +185,26 @@ def test_every_law_at_its_null_value_is_regular():
     value, slope = both(jnp.asarray(ravel(system)), jnp.asarray(push))
     np.testing.assert_allclose(value, motion(jnp.asarray(ravel(bare)), bare), atol=2e-7)
     assert np.all(np.isfinite(slope))
+
+
+def test_no_panel_holds_a_whole_crossing_of_the_play():
+    """A link at resonance is through a small play in a fifth of a sample: its panels are as short as that."""
+    rig, fast = Rig(3.2, 0.004, 12000.0, 20.0), Excitation("stepped", SteppedSine(9.5, (0.02,)))
+    made = simulate_truth(rig, {"coulomb_ground": {"Tc": 3.0}}, fast, 500.0, 5.0)
+    record = Record(made["t"], {"x": made["x"], "z": made["z"]})
+    system = base_motion_joint(rig.inertia, rig.backlash, rig.stiffness, rig.damping).with_effects(CoulombGround(3.0))
+    assert record.dt > 4.0 * rig.backlash / np.max(np.abs(made["v"] - made["dx"]))
+
+    def worst(windows, length):
+        first = length * np.arange((record.samples - 1) // length)
+        problem = make_problem(system, windows, ("backlash",))
+        starts = np.array(windows.starts)
+        starts[:, : first.size] = made["y"][first], made["v"][first]
+        found = predictions(problem, Unknowns(np.zeros(1), jnp.asarray(starts), jnp.asarray(windows.coefficients))).motion
+        return np.max(np.abs(np.asarray(found)[: first.size] - record.channels["z"][first[:, None] + np.arange(length)]))
+
+    windows, layout, _ = prepare(system, [record], 0.2)
+    coarse, as_coarse = cut([record], 0.1)
+    assert layout.length == as_coarse.length
+    assert worst(windows, layout.length) < 3e-6
+    assert worst(coarse, layout.length) > 3e-5  # the same steps, at what is enough for a slow link

@@ -184,3 +184,15 @@ def test_single_precision_is_refused():
             jb.simulate(*jb.case_1(), duration=0.1)
     finally:
         jax.config.update("jax_enable_x64", True)
+
+
+def test_a_link_that_is_through_its_play_in_no_time_meets_both_edges():
+    """The exact period again, of an amplitude of 400 half plays: most panels of 1 ms would hold both edges."""
+    omega, amplitude = 2.0 * np.pi * 10.0, 400.0
+    exact = (2 * np.pi + 4 / (amplitude - 1)) / omega
+    joint = jb.base_motion_joint(1.0, 2.0, omega**2, 0.0)
+    how = {"duration": 40 * exact, "rate": 40 / exact, "y0": amplitude, "dy0": 0.0}
+    found, coarse = jb.simulate(joint, **how), jb.simulate(joint, **how, panels_per_sample=3)
+    late = [abs(float(path.dy[-1])) / (amplitude * omega) / (40 * 2 * np.pi) for path in (found, coarse)]
+    assert late[0] < 1e-7
+    assert late[1] > 10 * late[0]

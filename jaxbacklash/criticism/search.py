@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -25,10 +25,12 @@ from .evidence import (
     significance,
 )
 from .memories import Member, families, may_replace, members
+from .steps import Step, leading
 from .tried import LOOSER, WHOLE, Tried
 from .tuning import apart
 from .under_noise import blurred, own_rest, promises
 from .workbench import Trial, Workbench, adequate, strengths
+from .yielding import yielding
 
 MOST_EFFECTS = 5
 """A model with more effects than this is no explanation any more."""
@@ -49,18 +51,6 @@ LIKELY, HALF = 2, 0.5
 """Guesses of such a law that are fitted at most, and share of a gain that is enough to promise where more may come of it."""
 SURE = 4.0
 """A gain predicted to be so many times what is demanded is no accident, so a fit that does not show it has stuck."""
-
-
-@dataclass(frozen=True)
-class Step:
-    """One model kept on the way: ``trial``, the effect ``added`` (None for the base), those ``dropped``, ``ranking`` of what was
-    absent, and ``evidence`` of the candidates that were really refitted, by name."""
-
-    trial: Trial
-    added: str | None
-    dropped: tuple[str, ...]
-    ranking: tuple[Candidate, ...]
-    evidence: dict[str, float] = field(default_factory=dict)
 
 
 class Search(Tried):
@@ -102,7 +92,7 @@ class Search(Tried):
             steps = self.with_hidden(steps)
             if not explained(steps[-1].trial):
                 steps = self.forward(steps[-1].trial, steps, LITTLE)
-        steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(self.with_unseen(steps)))))
+        steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(self.with_yielding(self.with_unseen(steps))))))
         return steps
 
     def trim(self, steps: list[Step]) -> list[Step]:
@@ -211,6 +201,15 @@ class Search(Tried):
 
         return seen() and (not trial.tied or seen(own_rest(self.bench, trial)))
 
+    def with_yielding(self, steps: list[Step]) -> list[Step]:
+        """The path with friction in the joint that gives, where only that makes one trajectory of the record."""
+        found = yielding(self, steps[-1].trial)
+        if found is None:
+            return steps
+        added, trial = found
+        settled, dropped = self.prune(self._keep(trial), spare=added)
+        return self.forward(settled, [*leading(steps, settled), Step(settled, added, dropped, ())], MUCH)
+
     def with_kin(self, steps: list[Step]) -> list[Step]:
         """Another path, where a near relative of a law with internal states explains with less beside it, or more."""
         final = steps[-1].trial
@@ -229,7 +228,7 @@ class Search(Tried):
         if best is final:
             return steps
         added = next(n for n in best.names if self.bench.laws[n].states)
-        return self.forward(best, [steps[0], Step(best, added, (), ())], MUCH)
+        return self.forward(best, [*leading(steps, best), Step(best, added, (), ())], MUCH)
 
     def swap(
         self, steps: list[Step], seen: frozenset[frozenset[str]] = frozenset()

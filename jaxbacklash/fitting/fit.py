@@ -176,7 +176,8 @@ def prepare(
         omega = np.sqrt(float(system.contact.stiffness) / float(system.inertia))
         period = 2.0 * np.pi / max(float(omega), 1e-9)
         # A first guess of the play may be far too small, so that there is an end to what it may ask for.
-        crossing = min(crossing_time(r, float(system.contact.backlash), period / 16.0) for r in records)
+        play = float(getattr(system.contact, "backlash", 0.0))  # a plain spring has none
+        crossing = min(crossing_time(r, play, period / 16.0) for r in records)
         longest = min(longest, max(min(period / (32.0 * finer), max(crossing, period / 256.0)), records[0].dt / 16.0))
     windows, layout = cut(records, shooting, longest_panel=longest, least=intervals)
     if system.observed == "T" and system.contact is not None:

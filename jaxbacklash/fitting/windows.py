@@ -228,12 +228,13 @@ def crossing_time(record: Record, play: float, span: float) -> float:
     A panel finds the first edge that the link meets, so that none may hold both. ``span`` [s] is the time over which the
     motion is differenced: short beside a period in contact, long enough that noise is no speed.
     """
-    motion = record.channels.get("z", record.channels.get("y"))
-    base = record.channels.get("x")
-    if motion is None:  # of a link that is not seen, its base tells the pace
-        motion = base
-    elif base is not None and "z" not in record.channels:
-        motion = motion - base
+    channels = record.channels
+    if "z" in channels:
+        motion = channels["z"]
+    elif "y" in channels:
+        motion = channels["y"] - channels.get("x", 0.0)
+    else:  # of a link that is not seen, its base tells the pace
+        motion = channels["x"]
     apart = min(max(1, int(span / record.dt)), record.samples - 1)
     fastest = float(np.max(np.abs(motion[apart:] - motion[:-apart]))) / (apart * record.dt)
     return play / fastest if play > 0.0 and fastest > 0.0 else np.inf

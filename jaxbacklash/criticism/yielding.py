@@ -1,0 +1,66 @@
+"""Friction that gives before it slips, where dry friction leaves windows that no trajectory joins.
+
+Free windows hardly tell how friction turns: each has a start of its own, and few samples near rest. One trajectory tells, but
+where friction in the joint gives a little before it slips, the one of dry friction sticks at every corner that is not there,
+so that its windows stay free and leave noise. The law that gives is then tried as one trajectory, from soft to stiff.
+"""
+
+from __future__ import annotations
+
+from ..mechanics import AbstractEffect, canonical_name
+from ..parameters import specs, values
+from .evidence import demanded, explained, gain, shapeless
+from .memories import families
+from .tried import WHOLE, Tried
+from .workbench import Trial, adequate
+
+
+def yielding(search: Tried, final: Trial) -> tuple[str, Trial] | None:
+    """The model with a law that gives in place of its dry friction in the joint, by that law's name.
+
+    None where the windows are one trajectory already, where no such law makes them one, or where its shape is not determined:
+    then it only leads dry friction round its corners, and if that is one trajectory from there, it is what is returned.
+    """
+    bench = search.bench
+    dry = next((n for n in sorted(final.names) if bench.laws[n].slides and bench.laws[n].port == "joint"), None)
+    if final.tied or dry is None or not adequate(final) or bench.outright:
+        return None
+    for names in families(bench).values():
+        if (soft := _joined(search, final, dry, names[0])) is None:
+            continue
+        sharp = _sharp(search, soft, names[0], final.system.effects[dry])
+        if sharp.tied and explained(sharp) and gain(sharp, soft) < demanded(bench):
+            return dry, sharp
+        if not shapeless(soft, names[0], bench.slowest):
+            return names[0], soft
+    return None
+
+
+def _level(law: AbstractEffect) -> float:
+    """The largest torque that a law states [N m]."""
+    found = values(law)
+    return max(abs(found[n]) for n, s in specs(law).items() if s.unit == "N m")
+
+
+def _joined(search: Tried, final: Trial, dry: str, name: str) -> Trial | None:
+    """One trajectory with the law that gives, from the first of its guesses that leads to one."""
+    bench = search.bench
+    beside = {n: e for n, e in bench.effects(final).items() if n != dry}
+    level = _level(final.system.effects[dry])
+    for guess in bench.laws[name].guesses(final.system, bench.quick.motion):
+        search.progress(f"trying {name} in place of {dry}", 0.65)
+        effects = {**beside, name: guess.scaled(level)}
+        tried = bench.fit(effects, final, tied=True, followed=True, patience=WHOLE)
+        if not tried.done and adequate(tried):
+            tried = search.finish(tried)
+        if explained(tried):
+            return tried
+    return None
+
+
+def _sharp(search: Tried, soft: Trial, name: str, law: AbstractEffect) -> Trial:
+    """Dry friction of the same level, as one trajectory from that of the law that gives."""
+    effects = search.bench.effects(soft)
+    level = _level(effects.pop(name)) / max(_level(law), 1e-300)
+    effects[canonical_name(law)] = law.scaled(level)
+    return search.softly(search.bench.fit(effects, soft, tied=True, patience=WHOLE))
