@@ -8,7 +8,7 @@ so that its windows stay free and leave noise. The law that gives is then tried 
 from __future__ import annotations
 
 from ..mechanics import AbstractEffect, canonical_name
-from ..parameters import specs, values
+from ..parameters import specs, values, with_values
 from .evidence import demanded, explained, gain, shapeless
 from .memories import families
 from .tried import WHOLE, Tried
@@ -42,6 +42,12 @@ def _level(law: AbstractEffect) -> float:
     return max(abs(found[n]) for n, s in specs(law).items() if s.unit == "N m")
 
 
+def _stronger(law: AbstractEffect, factor: float) -> AbstractEffect:
+    """The law with all of its torques grown together: it gives over the same distance."""
+    found = values(law)
+    return with_values(law, {n: factor * found[n] for n, s in specs(law).items() if s.unit.startswith("N m")})
+
+
 def _joined(search: Tried, final: Trial, dry: str, name: str) -> Trial | None:
     """One trajectory with the law that gives, from the first of its guesses that leads to one."""
     bench = search.bench
@@ -49,7 +55,7 @@ def _joined(search: Tried, final: Trial, dry: str, name: str) -> Trial | None:
     level = _level(final.system.effects[dry])
     for guess in bench.laws[name].guesses(final.system, bench.quick.motion):
         search.progress(f"trying {name} in place of {dry}", 0.65)
-        effects = {**beside, name: guess.scaled(level)}
+        effects = {**beside, name: _stronger(guess, level)}
         tried = bench.fit(effects, final, tied=True, followed=True, patience=WHOLE)
         if not tried.done and adequate(tried):
             tried = search.finish(tried)
@@ -61,6 +67,5 @@ def _joined(search: Tried, final: Trial, dry: str, name: str) -> Trial | None:
 def _sharp(search: Tried, soft: Trial, name: str, law: AbstractEffect) -> Trial:
     """Dry friction of the same level, as one trajectory from that of the law that gives."""
     effects = search.bench.effects(soft)
-    level = _level(effects.pop(name)) / max(_level(law), 1e-300)
-    effects[canonical_name(law)] = law.scaled(level)
+    effects[canonical_name(law)] = _stronger(law, _level(effects.pop(name)) / max(_level(law), 1e-300))
     return search.softly(search.bench.fit(effects, soft, tied=True, patience=WHOLE))

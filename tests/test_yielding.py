@@ -1,0 +1,102 @@
+"""Friction that gives in the place of dry friction that no trajectory follows, on models that are only numbers."""
+
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+
+import pytest
+
+from jaxbacklash.criticism import yielding as module
+from jaxbacklash.criticism.tried import Tried
+from jaxbacklash.criticism.yielding import yielding
+from jaxbacklash.effects import CoulombJoint, Dahl
+
+
+@dataclass(frozen=True)
+class Model:
+    """As much of a fitted model as is looked at: an effect of each name, as it was fitted."""
+
+    effects: dict
+    cost: float
+    tied: bool = True
+    done: bool = True
+    misfit: float = 1.0
+    correlation: float = 1.0
+    free: tuple[str, ...] = ("backlash",)
+    system: SimpleNamespace = field(default_factory=SimpleNamespace)
+
+    @property
+    def names(self):
+        return frozenset(self.effects)
+
+    @property
+    def criterion(self):
+        return 2.0 * self.cost
+
+
+class Bench:
+    """Answers fits of each law from a list, and notes with what they began."""
+
+    def __init__(self, **answers):
+        self.answers, self.begun = answers, []
+        self.laws = {"coulomb_joint": CoulombJoint, "dahl": Dahl}
+        self.outright, self.slowest, self.is_cut, self.quick = (), 0.0, False, SimpleNamespace(motion=None, blind=False)
+
+    def effects(self, trial):
+        return dict(trial.effects)
+
+    def grips(self, names):
+        return False
+
+    def fit(self, effects, start=None, **how):
+        (name,) = effects
+        assert how["tied"]
+        self.begun.append(effects[name])
+        return self.answers[name].pop(0)
+
+    def fit_softly(self, trial, *_):
+        return trial
+
+
+@pytest.fixture(autouse=True)
+def presliding(monkeypatch):
+    monkeypatch.setattr(Dahl, "guesses", classmethod(lambda cls, system, motion=None: [cls(1.0, 1e3), cls(1.0, 1e4)]))
+
+
+def found(final, *, shapeless=False, monkeypatch, **answers):
+    monkeypatch.setattr(module, "shapeless", lambda *_: shapeless)
+    bench = Bench(**answers)
+    search = Tried(bench)
+    return yielding(search, final), bench
+
+
+def models(cost, misfit=1.0):
+    dry, gives = CoulombJoint(3.0), Dahl(3.5, 2e3)
+    loose = Model({"coulomb_joint": dry}, 100.0, tied=False)
+    loose.system.effects = loose.effects
+    return loose, Model({"dahl": gives}, 100.0), Model({"coulomb_joint": dry}, cost, misfit=misfit)
+
+
+def test_one_trajectory_is_left_alone(monkeypatch):
+    _, soft, sharp = models(100.0)
+    assert found(sharp, monkeypatch=monkeypatch)[0] is None
+    assert found(soft, monkeypatch=monkeypatch)[0] is None
+
+
+def test_friction_that_gives_takes_the_place_of_what_no_trajectory_follows(monkeypatch):
+    loose, soft, stuck = models(1e5, misfit=9.0)
+    lost = Model({"dahl": Dahl(3.0, 3e3)}, 1e5, misfit=9.0)
+    (name, trial), bench = found(loose, monkeypatch=monkeypatch, dahl=[lost, soft], coulomb_joint=[stuck])
+    assert (name, trial) == ("dahl", soft)
+    assert [(float(law.Fc), float(law.sigma)) for law in bench.begun[:2]] == [(3.0, 3e3), (3.0, 3e4)]
+    assert float(bench.begun[2].Tc) == pytest.approx(3.5)
+
+
+@pytest.mark.parametrize(("lost", "name"), [(0.1, "coulomb_joint"), (200.0, "dahl")])
+def test_dry_friction_that_follows_from_there_is_kept_unless_it_leaves_clearly_more(monkeypatch, lost, name):
+    loose, soft, sharp = models(100.0 + lost)
+    assert found(loose, monkeypatch=monkeypatch, dahl=[soft], coulomb_joint=[sharp])[0][0] == name
+
+
+def test_a_law_whose_shape_the_record_does_not_tell_is_no_answer(monkeypatch):
+    loose, soft, stuck = models(1e5, misfit=9.0)
+    assert found(loose, monkeypatch=monkeypatch, shapeless=True, dahl=[soft], coulomb_joint=[stuck])[0] is None
