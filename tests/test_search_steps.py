@@ -352,3 +352,12 @@ def test_a_law_at_the_limit_of_its_shape_gives_way_to_a_simpler_one_that_promise
     assert [sorted(t.names) for t in search.instead(steps, "torque_ripple")] == [["preload"], ["gravity"]]
     at["bound"] = False
     assert not list(search.instead(steps, "torque_ripple"))
+
+
+def test_what_is_still_on_its_way_is_finished_before_it_is_tied():
+    names = frozenset({"gravity"})
+    begun = Model(names, cost=500.0, tied=False, done=False, misfit=1.4)
+    finished, tied = Model(names, cost=100.0, tied=False), Model(names, cost=100.5)
+    search = Search(Bench(finished, tied))
+    assert search.settle(begun) == tied
+    assert search.bench.asked == [(names, False), (names, True)]

@@ -208,7 +208,10 @@ class Search(Tried):
             return steps
         added, trial = found
         settled, dropped = self.prune(self._keep(trial), spare=added)
-        return self.forward(settled, [*leading(steps, settled), Step(settled, added, dropped, ())], MUCH)
+        path = [*leading(steps, settled), Step(settled, added, dropped, ())]
+        # Which of a family it is comes first: what the wrong one leaves would ask for effects that are not there.
+        kin = self.with_kin(path)
+        return self.forward(settled, path, MUCH) if kin is path else kin
 
     def with_kin(self, steps: list[Step]) -> list[Step]:
         """Another path, where a near relative of a law with internal states explains with less beside it, or more."""

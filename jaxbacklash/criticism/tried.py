@@ -42,6 +42,8 @@ class Tried:
 
     def settle(self, trial: Trial) -> Trial:
         """The trial finished, and its windows tied where it is good enough for that."""
+        if not trial.tied and not trial.done and not adequate(trial):
+            trial = self.finish(trial)  # what is still on its way may come to be good enough
         if not trial.tied and adequate(trial):
             tied = self.bench.fit(self.bench.effects(trial), trial, tied=True, patience=WHOLE)
             if follows(tied, trial):

@@ -2,7 +2,7 @@
 
 Free windows hardly tell how friction turns: each has a start of its own, and few samples near rest. One trajectory tells, but
 where friction in the joint gives a little before it slips, the one of dry friction sticks at every corner that is not there,
-so that its windows stay free and leave noise. The law that gives is then tried as one trajectory, from soft to stiff.
+so that its windows stay free and leave noise. The law that gives is then tried as one trajectory, from its own free windows.
 """
 
 from __future__ import annotations
@@ -56,9 +56,10 @@ def _joined(search: Tried, final: Trial, dry: str, name: str) -> Trial | None:
     for guess in bench.laws[name].guesses(final.system, bench.quick.motion):
         search.progress(f"trying {name} in place of {dry}", 0.65)
         effects = {**beside, name: _stronger(guess, level)}
-        tried = bench.fit(effects, final, tied=True, followed=True, patience=WHOLE)
-        if not tried.done and adequate(tried):
-            tried = search.finish(tried)
+        free = bench.fit(effects, final, followed=True, patience=WHOLE)
+        if not adequate(free):
+            continue
+        tried = bench.fit(bench.effects(free), free, tied=True, patience=WHOLE)
         if explained(tried):
             return tried
     return None
