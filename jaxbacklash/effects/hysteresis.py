@@ -63,12 +63,25 @@ class Dahl(AbstractEffect):
         return (jnp.clip(10.0 * now.dz, -1.0, 1.0),)
 
 
+FARTHEST = 5.0
+"""How many times larger or smaller than its level in motion friction at rest counts in full."""
+
+
+def _tempered(ratio: Scalar) -> Scalar:
+    """A ratio > 0 as it is up to `FARTHEST` and down to its inverse, and beyond them by its logarithm, slope and all: a fit that
+    has gone too far must see the way back."""
+    size = jnp.maximum(ratio, 1.0 / jnp.maximum(ratio, 1e-9))
+    tempered = jnp.where(size > FARTHEST, FARTHEST * (1.0 + jnp.log(jnp.maximum(size, FARTHEST) / FARTHEST)), size)
+    return jnp.where(ratio >= 1.0, tempered, 1.0 / tempered)
+
+
 class Lugre(AbstractEffect):
     r"""LuGre friction, :math:`T = -(\sigma_0 s + \sigma_1 \dot s + \sigma_2 \dot z)` (Canudas de Wit et al., 1995).
 
     The bristle gives :math:`\dot s = \dot z - \sigma_0 |\dot z| s / g` with
-    :math:`g = F_c + (F_s - F_c) e^{-(\dot z / v_s)^2}`. :math:`F_s` counts within :math:`F_c / 5 \ldots 5 F_c`, so that the law
-    vanishes with :math:`F_c` alone; left at zero it is :math:`F_c`, and below it friction grows with speed. :math:`\sigma_2` is
+    :math:`g = F_c + (F_s - F_c) e^{-(\dot z / v_s)^2}`. :math:`F_s` counts as it is within
+    :math:`F_c / 5 \ldots 5 F_c` and by the logarithm of what exceeds that, so that the law vanishes with :math:`F_c` alone; left at
+    zero it is :math:`F_c`, and below it friction grows with speed. :math:`\sigma_2` is
     one with the joint's damper and therefore never fitted.
     """
 
@@ -101,8 +114,7 @@ class Lugre(AbstractEffect):
 
     def rate(self, now: Instant) -> tuple[Scalar, ...]:
         # Below Fc as well as above: a bound at Fs = Fc would hide from a fit that crossed it which way leads back.
-        ratio = jnp.where(self.Fs > 0.0, self.Fs / jnp.maximum(self.Fc, 1e-9), 1.0)
-        extra = jnp.clip(ratio, 0.2, 5.0) - 1.0
+        extra = _tempered(jnp.where(self.Fs > 0.0, self.Fs / jnp.maximum(self.Fc, 1e-9), 1.0)) - 1.0
         level = 1.0 + extra * jnp.exp(-((now.dz / jnp.maximum(self.vs, 1e-6)) ** 2))
         flow = _flow(now.dz, self.sigma0, self.Fc)
         return (flow - jnp.abs(flow) * now.state[0] / level,)
