@@ -163,7 +163,7 @@ class Search(Tried):
             if not law.states or law.family or name in trial.names:
                 continue
             self.progress(f"looking for {name} under the noise", 0.65)
-            telling = promises(self.bench, trial, law)
+            telling = promises(self.bench, trial, law, least)
             # Its frequency is a guess, and what is fitted from one need not be the best there is.
             for fall, effect in telling[:LIKELY]:
                 if fall > max(least, HALF * telling[0][0]):

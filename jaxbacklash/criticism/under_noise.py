@@ -33,8 +33,10 @@ WEAKEST, STRONGEST = 0.05, 3.0
 """Sizes, as multiples of the guess, within which the promise of a straight line is believed."""
 
 
-def promises(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> list[tuple[float, AbstractEffect]]:
-    """What a law's guesses promise beside a tied trial, the best first; none where none does.
+def promises(
+    bench: Workbench, trial: Trial, law: type[AbstractEffect], least: float = 0.0
+) -> list[tuple[float, AbstractEffect]]:
+    """What a law's guesses promise beside a tied trial, ``least`` and more, the best first; none where none does.
 
     Returns
     -------
@@ -65,7 +67,7 @@ def promises(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> list[
         if not (np.isfinite(curvature) and curvature > 0.0 and slope < 0.0):
             continue
         fall = slope**2 / curvature
-        if not fall < 2.0 * still:
+        if not least <= fall < 2.0 * still:
             continue
         # Where the answer is no parabola, noise is too small for a trajectory to bend so little: it promises nothing.
         further = slope * FURTHER * SHARE + 0.5 * curvature * (FURTHER * SHARE) ** 2
