@@ -22,6 +22,7 @@ class Model:
     correlation: float = 1.0
     free: tuple[str, ...] = ("backlash",)
     effects: dict[str, str] = field(default_factory=dict)
+    system: object = None
 
     @property
     def criterion(self) -> float:
@@ -266,6 +267,7 @@ def laws(**absorbs):
 def test_models_that_take_each_others_place_come_to_an_end(monkeypatch, ahead):
     """A law stands in for a simpler one that it contains, is reduced to it, and would stand in again."""
     simple, rich = Model(frozenset({"simple"}), cost=100.0), Model(frozenset({"rich"}), cost=100.0 - 0.5 * ahead)
+    significant(monkeypatch, 100.0)
     search, asked = Search(Bench()), []
     search.bench.laws = laws(simple=(), rich=("simple",), other=())
     monkeypatch.setattr(search, "instead", lambda steps, name: asked.append(name) or [rich if name == "simple" else simple])
@@ -279,6 +281,7 @@ def test_models_that_take_each_others_place_come_to_an_end(monkeypatch, ahead):
 @pytest.mark.parametrize(("ahead", "taken"), [(1.0, False), (2.1, False), (10.0, True)])
 def test_a_richer_relative_replaces_a_law_only_where_it_is_clearly_better(monkeypatch, ahead, taken):
     simple, rich = Model(frozenset({"simple"}), cost=100.0), Model(frozenset({"rich"}), cost=100.0 - 0.5 * ahead)
+    significant(monkeypatch, 100.0)
     search = Search(Bench())
     search.bench.laws = laws(simple=(), rich=("simple",), other=())
     monkeypatch.setattr(search, "instead", lambda steps, name: [rich] if name == "simple" else [])
@@ -292,8 +295,12 @@ def test_what_a_replacement_makes_needless_goes_with_what_it_replaces(monkeypatc
     significant(monkeypatch, 0.5)
     wrong = Model(frozenset({"simple", "other"}), cost=100.0, free=("backlash", "a", "b"))
     right = Model(frozenset({"rich", "other"}), cost=90.0, free=("backlash", "c", "b"))
-    search = Search(Bench(Model(frozenset({"rich"}), cost=90.5, free=("backlash", "c"))))
+    without_new = Model(frozenset({"other"}), cost=95.0, free=("backlash", "b"))
+    alone = Model(frozenset({"rich"}), cost=90.5, free=("backlash", "c"))
+    search = Search(Bench())
+    search.known = {(m.names, True): m for m in (without_new, alone, Model(frozenset(), cost=500.0))}
     search.bench.laws = laws(simple=(), rich=(), other=())
+    monkeypatch.setattr(search, "without", lambda before, name: search.known[before.names - {name}, True])
     monkeypatch.setattr("jaxbacklash.criticism.search.gain", lambda before, after: before.criterion - after.criterion)
     monkeypatch.setattr(search, "instead", lambda steps, name: [right] if name == "simple" else [])
     monkeypatch.setattr(search, "reduced", lambda steps: steps)
@@ -361,3 +368,31 @@ def test_what_is_still_on_its_way_is_finished_before_it_is_tied():
     search = Search(Bench(finished, tied))
     assert search.settle(begun) == tied
     assert search.bench.asked == [(names, False), (names, True)]
+
+
+def test_a_replacement_that_is_needless_itself_goes_too(monkeypatch):
+    """A law in the place of what had held another up: that other one does alone."""
+    significant(monkeypatch, 0.5)
+    wrong = Model(frozenset({"right", "stands in"}), cost=100.0, free=("backlash", "a", "b"))
+    other = Model(frozenset({"right", "new"}), cost=70.0, free=("backlash", "a", "c"))
+    alone, lost = Model(frozenset({"right"}), cost=70.5, free=("backlash", "a")), Model(frozenset({"new"}), cost=900.0)
+    search = Search(Bench())
+    known = {m.names: m for m in (alone, lost, Model(frozenset(), cost=1000.0))}
+    search.bench.laws = laws(**{"right": (), "stands in": (), "new": ()})
+    monkeypatch.setattr(search, "without", lambda before, name: known[before.names - {name}])
+    monkeypatch.setattr("jaxbacklash.criticism.search.gain", lambda before, after: before.criterion - after.criterion)
+    monkeypatch.setattr(search, "instead", lambda steps, name: [other] if name == "stands in" else [])
+    monkeypatch.setattr(search, "reduced", lambda steps: steps)
+    steps, _ = search.swap([Step(wrong, "right", ("nibbled",), ())])
+    assert (steps[-1].trial, steps[-1].added, steps[-1].dropped) == (alone, "right", ("nibbled", "stands in"))
+
+
+@pytest.mark.parametrize(("misfits", "left"), [((1.4, 1.2, 1.02), 1.02), ((1.4, 1.39), 1.4), ((2.5,), 2.1)])
+def test_windows_that_friction_has_stuck_begin_again_from_the_data(misfits, left):
+    names = frozenset({"rubs"})
+    stuck = Model(names, cost=500.0, tied=False, misfit=2.1)
+    search = Search(Bench(*(Model(names, cost=100.0 * m, tied=False, misfit=m) for m in misfits)))
+    search.bench.laws = laws(rubs=())
+    search.bench.fit = lambda effects, joint=None, patience=0: search.bench.answers.pop(0)
+    assert search.renewed(stuck).misfit == left
+    assert not search.bench.answers

@@ -254,9 +254,13 @@ class Search(Tried):
                         return self.swap([*steps[:-1], self.freed(steps[-1], relieved)], seen)
                     other = other if other.done else self.finish(other)
                     added = next(iter(other.names - final.names))
-                    # What stood beside the effect that is replaced may have made up for it.
-                    other, dropped = self.prune(other, spare=added)
-                    path = self.reduced([*steps[:-1], Step(other, added, dropped, ())])
+                    # What stood beside the effect that is replaced may have made up for it, and so may what took its place.
+                    other, gone = self.prune(other)
+                    step = Step(other, added, gone, ())
+                    if added in gone:
+                        gone = (*steps[-1].dropped, name, *(n for n in gone if n != added))
+                        step = replace(steps[-1], trial=other, dropped=gone)
+                    path = self.reduced([*steps[:-1], step])
                     if path[-1].trial.names not in seen:
                         return self.swap(path, seen)
                 if -lead < demanded(self.bench):
@@ -414,6 +418,7 @@ class Search(Tried):
 
     def finished(self, current: Trial, tried: dict[str, Trial]) -> dict[str, Trial]:
         """The same candidates, those fitted to the end that lie close to the best."""
+        tried = self.unstuck(current, tried)
         lowest = min((t.criterion for t in tried.values()), default=0.0)
         near = (1.0 - CLOSE) * (current.criterion - lowest)
         close = [n for n, t in tried.items() if t.criterion - lowest <= near]

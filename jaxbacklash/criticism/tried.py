@@ -22,6 +22,8 @@ ROUGH = 1.0
 """How much of half the sum of squares may be left to gain by a model that can hardly be chosen."""
 LOOSER = 1.0
 """A fit that comes out so much lower when it is given its turn again had stuck."""
+ROUNDS, CLEARLY = 8, 0.97
+"""How often windows are begun again from the data, and the share of the misfit that must remain at most for it to go on."""
 WHOLE = 60
 """Linearisations allowed to a model that is kept."""
 
@@ -148,6 +150,27 @@ class Tried:
         self._keep(free)
         again = self.bench.fit(self.bench.effects(free), free, tied=True, patience=WHOLE)
         return min(tied, again, key=lambda t: t.cost)
+
+    def renewed(self, trial: Trial) -> Trial:
+        """A free fit with dry friction begun again from its own parameters and the data, as long as that clearly helps.
+
+        Windows that come from a model without that friction may stick where the link would rest, and hold the parameters back.
+        """
+        for _ in range(ROUNDS):
+            if trial.tied or explained(trial) or not self.dry(trial) or self.bench.grips(trial.names):
+                break
+            self.progress(f"beginning again: {', '.join(sorted(trial.names))}", 0.45)
+            again = self.bench.fit(self.bench.effects(trial), joint=trial.system, patience=WHOLE)
+            if not again.misfit < CLEARLY * trial.misfit:
+                break
+            trial = self._keep(again)
+        return trial
+
+    def unstuck(self, before: Trial, tried: dict[str, Trial]) -> dict[str, Trial]:
+        """The same candidates, the best of those with dry friction that help `renewed`."""
+        rubbing = [n for n, t in tried.items() if self.dry(t) and gain(before, t) > demanded(self.bench)]
+        best = min(rubbing, key=lambda n: tried[n].criterion, default=None)
+        return tried if best is None else {**tried, best: self.renewed(tried[best])}
 
     def loosened(self, trial: Trial) -> Trial:
         """The same model with its windows free."""

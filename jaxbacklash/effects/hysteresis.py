@@ -80,9 +80,9 @@ class Lugre(AbstractEffect):
 
     The bristle gives :math:`\dot s = \dot z - \sigma_0 |\dot z| s / g` with
     :math:`g = F_c + (F_s - F_c) e^{-(\dot z / v_s)^2}`. :math:`F_s` counts as it is within
-    :math:`F_c / 5 \ldots 5 F_c` and by the logarithm of what exceeds that, so that the law vanishes with :math:`F_c` alone; left at
-    zero it is :math:`F_c`, and below it friction grows with speed. :math:`\sigma_2` is
-    one with the joint's damper and therefore never fitted.
+    :math:`F_c / 5 \ldots 5 F_c` and by the logarithm of what exceeds that, so that the law vanishes with :math:`F_c` alone;
+    left at zero it is :math:`F_c`, and below it friction grows with speed. :math:`\sigma_2` is one with the joint's damper and
+    therefore never fitted.
     """
 
     sigma0: Scalar = param(unit="N m/rad", default=4000.0, lower=1.0, scale=1000.0)
