@@ -420,8 +420,7 @@ class Search(Tried):
         """The same candidates, those fitted to the end that lie close to the best."""
         tried = self.unstuck(current, tried)
         lowest = min((t.criterion for t in tried.values()), default=0.0)
-        near = (1.0 - CLOSE) * (current.criterion - lowest)
-        close = [n for n, t in tried.items() if t.criterion - lowest <= near]
+        close = [n for n, t in tried.items() if t.criterion - lowest <= (1.0 - CLOSE) * (current.criterion - lowest)]
         undecided = len(close) > 1
         return {n: self.shaken(t if t.done else self.finish(t)) if undecided and n in close else t for n, t in tried.items()}
 
