@@ -370,12 +370,13 @@ def test_what_is_still_on_its_way_is_finished_before_it_is_tied():
     assert search.bench.asked == [(names, False), (names, True)]
 
 
-def test_a_replacement_that_is_needless_itself_goes_too(monkeypatch):
-    """A law in the place of what had held another up: that other one does alone."""
+@pytest.mark.parametrize("cost", [70.0, 101.0])
+def test_a_replacement_that_is_needless_itself_goes_too(monkeypatch, cost):
+    """A law in the place of what had held another up, if only to as much: that other one does alone."""
     significant(monkeypatch, 0.5)
     wrong = Model(frozenset({"right", "stands in"}), cost=100.0, free=("backlash", "a", "b"))
-    other = Model(frozenset({"right", "new"}), cost=70.0, free=("backlash", "a", "c"))
-    alone, lost = Model(frozenset({"right"}), cost=70.5, free=("backlash", "a")), Model(frozenset({"new"}), cost=900.0)
+    other = Model(frozenset({"right", "new"}), cost=cost, free=("backlash", "a", "c"))
+    alone, lost = Model(frozenset({"right"}), cost=cost + 0.5, free=("backlash", "a")), Model(frozenset({"new"}), cost=900.0)
     search = Search(Bench())
     known = {m.names: m for m in (alone, lost, Model(frozenset(), cost=1000.0))}
     search.bench.laws = laws(**{"right": (), "stands in": (), "new": ()})

@@ -247,19 +247,22 @@ class Search(Tried):
         seen |= {final.names}
         for name in sorted(final.names):
             for other in self.instead(steps, name):
+                needless: tuple[str, ...] = ()
+                if other.criterion - final.criterion < demanded(self.bench) and adequate(other):
+                    # What does as well may do so without what took the place: where it led, the rest was stuck before.
+                    other, needless = self.prune(other)
                 lead = final.criterion - other.criterion
                 if other.names not in seen and lead > self.lead(other, final, name) and adequate(other):
                     relieved = self.shaken(final)
                     if final.cost - relieved.cost > LOOSER:
                         return self.swap([*steps[:-1], self.freed(steps[-1], relieved)], seen)
-                    other = other if other.done else self.finish(other)
-                    added = next(iter(other.names - final.names))
-                    # What stood beside the effect that is replaced may have made up for it, and so may what took its place.
-                    other, gone = self.prune(other)
-                    step = Step(other, added, gone, ())
-                    if added in gone:
-                        gone = (*steps[-1].dropped, name, *(n for n in gone if n != added))
-                        step = replace(steps[-1], trial=other, dropped=gone)
+                    # What stood beside the effect that is replaced may have made up for it.
+                    other, gone = self.prune(other if other.done else self.finish(other))
+                    if added := next(iter(other.names - final.names), None):
+                        step = Step(other, added, (*needless, *gone), ())
+                    else:
+                        lost = sorted(final.names - other.names)
+                        step = replace(steps[-1], trial=other, dropped=(*steps[-1].dropped, *lost))
                     path = self.reduced([*steps[:-1], step])
                     if path[-1].trial.names not in seen:
                         return self.swap(path, seen)
@@ -269,7 +272,9 @@ class Search(Tried):
 
     def lead(self, other: Trial, final: Trial, name: str) -> float:
         """By how much another model must be better to replace the last one: clearly, where what is new in it is of the measuring
-        chain alone or contains the law whose place it takes."""
+        chain alone or contains the law whose place it takes. What is contained in it need only be no worse."""
+        if other.names < final.names:
+            return -demanded(self.bench)
         new = [self.bench.laws[n] for n in other.names - final.names]
         return demanded(self.bench) if all(measures_only(law) or name in law.absorbs for law in new) else 2.0
 
@@ -423,11 +428,6 @@ class Search(Tried):
         close = [n for n, t in tried.items() if t.criterion - lowest <= (1.0 - CLOSE) * (current.criterion - lowest)]
         undecided = len(close) > 1
         return {n: self.shaken(t if t.done else self.finish(t)) if undecided and n in close else t for n, t in tried.items()}
-
-    def rubs(self, trial: Trial) -> bool:
-        """Whether a model has friction in the joint: what a record asks for beside it may be that friction's memory."""
-        effects = self.bench.effects(trial).values()
-        return any((e.family and e.states) or (e.slides and e.port == "joint") for e in effects)
 
     def memories(self, current: Trial, ranking: tuple[Candidate, ...]) -> dict[str, Trial]:
         """Models with a law of friction that gives before it slips, where the quick look puts it before every static one.

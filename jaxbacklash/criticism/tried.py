@@ -204,6 +204,11 @@ class Tried:
         """Whether a model has dry friction, whose corners a search may stick at."""
         return any(self.bench.laws[name].slides for name in trial.names)
 
+    def rubs(self, trial: Trial) -> bool:
+        """Whether a model has friction in the joint: what a record asks for beside it may be that friction's memory."""
+        effects = self.bench.effects(trial).values()
+        return any((e.family and e.states) or (e.slides and e.port == "joint") for e in effects)
+
     def shaken(self, trial: Trial) -> Trial:
         """A tied model fitted `softly`, once in a search, if that finds something better."""
         if not trial.tied or trial.names in self.shook:
