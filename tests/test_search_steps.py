@@ -1,6 +1,6 @@
 """What the search does where a fit has stuck, on models that are only numbers."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -9,24 +9,7 @@ from jaxbacklash.criticism.search import Search, Step
 from jaxbacklash.criticism.tried import SLIGHT
 from jaxbacklash.effects import CoulombJoint, Gravity, Stribeck
 
-
-@dataclass(frozen=True)
-class Model:
-    """As much of a fitted model as the search looks at."""
-
-    names: frozenset[str]
-    cost: float
-    tied: bool = True
-    done: bool = True
-    misfit: float = 1.0
-    correlation: float = 1.0
-    free: tuple[str, ...] = ("backlash",)
-    effects: dict[str, str] = field(default_factory=dict)
-    system: object = None
-
-    @property
-    def criterion(self) -> float:
-        return 2.0 * self.cost + 10.0 * len(self.free)
+from .number_models import Model
 
 
 class Bench:

@@ -1,6 +1,5 @@
 """Friction that gives in the place of dry friction that no trajectory follows, on models that are only numbers."""
 
-from dataclasses import dataclass, field
 from types import SimpleNamespace
 
 import pytest
@@ -10,27 +9,11 @@ from jaxbacklash.criticism.tried import Tried
 from jaxbacklash.criticism.yielding import yielding
 from jaxbacklash.effects import CoulombJoint, Dahl
 
+from .number_models import Model
 
-@dataclass(frozen=True)
-class Model:
-    """As much of a fitted model as is looked at: an effect of each name, as it was fitted."""
 
-    effects: dict
-    cost: float
-    tied: bool = True
-    done: bool = True
-    misfit: float = 1.0
-    correlation: float = 1.0
-    free: tuple[str, ...] = ("backlash",)
-    system: SimpleNamespace = field(default_factory=SimpleNamespace)
-
-    @property
-    def names(self):
-        return frozenset(self.effects)
-
-    @property
-    def criterion(self):
-        return 2.0 * self.cost
+def model(cost, *, tied=True, misfit=1.0, **effects):
+    return Model(frozenset(effects), cost, tied, misfit=misfit, effects=effects, system=SimpleNamespace(effects=effects))
 
 
 class Bench:
@@ -50,7 +33,7 @@ class Bench:
     def fit(self, effects, start=None, **how):
         (name,) = effects
         if not how.get("tied"):
-            return Model(effects, 90.0, tied=False)
+            return model(90.0, tied=False, **effects)
         self.begun.append(effects[name])
         return self.answers[name].pop(0)
 
@@ -72,9 +55,8 @@ def found(final, *, shapeless=False, monkeypatch, **answers):
 
 def models(cost, misfit=1.0):
     dry, gives = CoulombJoint(3.0), Dahl(3.5, 2e3)
-    loose = Model({"coulomb_joint": dry}, 100.0, tied=False)
-    loose.system.effects = loose.effects
-    return loose, Model({"dahl": gives}, 100.0), Model({"coulomb_joint": dry}, cost, misfit=misfit)
+    sharp = model(cost, misfit=misfit, coulomb_joint=dry)
+    return model(100.0, tied=False, coulomb_joint=dry), model(100.0, dahl=gives), sharp
 
 
 def test_one_trajectory_is_left_alone(monkeypatch):
@@ -85,9 +67,10 @@ def test_one_trajectory_is_left_alone(monkeypatch):
 
 def test_friction_that_gives_takes_the_place_of_what_no_trajectory_follows(monkeypatch):
     loose, soft, stuck = models(1e5, misfit=9.0)
-    lost = Model({"dahl": Dahl(3.0, 3e3)}, 1e5, misfit=9.0)
+    lost = model(1e5, misfit=9.0, dahl=Dahl(3.0, 3e3))
     (name, trial), bench = found(loose, monkeypatch=monkeypatch, dahl=[lost, soft], coulomb_joint=[stuck])
-    assert (name, trial) == ("dahl", soft)
+    assert name == "dahl"
+    assert trial is soft
     assert [(float(law.Fc), float(law.sigma)) for law in bench.begun[:2]] == [(3.0, 3e3), (3.0, 3e4)]
     assert float(bench.begun[2].Tc) == pytest.approx(3.5)
 

@@ -8,10 +8,11 @@ so that its windows stay free and leave noise. The law that gives is then tried 
 from __future__ import annotations
 
 from ..mechanics import AbstractEffect, canonical_name
-from ..parameters import specs, values, with_values
+from ..parameters import specs, values
 from .evidence import demanded, explained, gain, shapeless
 from .memories import families
 from .tried import WHOLE, Tried
+from .tuning import stronger
 from .workbench import Trial, adequate
 
 
@@ -42,12 +43,6 @@ def _level(law: AbstractEffect) -> float:
     return max(abs(found[n]) for n, s in specs(law).items() if s.unit == "N m")
 
 
-def _stronger(law: AbstractEffect, factor: float) -> AbstractEffect:
-    """The law with all of its torques grown together: it gives over the same distance."""
-    found = values(law)
-    return with_values(law, {n: factor * found[n] for n, s in specs(law).items() if s.unit.startswith("N m")})
-
-
 def _joined(search: Tried, final: Trial, dry: str, name: str) -> Trial | None:
     """One trajectory with the law that gives, from the first of its guesses that leads to one."""
     bench = search.bench
@@ -55,7 +50,7 @@ def _joined(search: Tried, final: Trial, dry: str, name: str) -> Trial | None:
     level = _level(final.system.effects[dry])
     for guess in bench.laws[name].guesses(final.system, bench.quick.motion):
         search.progress(f"trying {name} in place of {dry}", 0.65)
-        effects = {**beside, name: _stronger(guess, level)}
+        effects = {**beside, name: stronger(guess, level)}
         free = bench.fit(effects, final, followed=True, patience=WHOLE)
         if not adequate(free):
             continue
@@ -68,5 +63,5 @@ def _joined(search: Tried, final: Trial, dry: str, name: str) -> Trial | None:
 def _sharp(search: Tried, soft: Trial, name: str, law: AbstractEffect) -> Trial:
     """Dry friction of the same level, as one trajectory from that of the law that gives."""
     effects = search.bench.effects(soft)
-    effects[canonical_name(law)] = _stronger(law, _level(effects.pop(name)) / max(_level(law), 1e-300))
+    effects[canonical_name(law)] = stronger(law, _level(effects.pop(name)) / max(_level(law), 1e-300))
     return search.softly(search.bench.fit(effects, soft, tied=True, patience=WHOLE))
