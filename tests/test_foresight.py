@@ -7,6 +7,7 @@ import pytest
 
 from jaxbacklash import compiled, refine
 from jaxbacklash.criticism.foresight import Foresight
+from jaxbacklash.criticism.refine import _Judge
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting import levenberg
 from jaxbacklash.fitting.setup import base_system
@@ -38,3 +39,16 @@ def test_a_search_with_dry_friction_finds_its_programs_in_the_making(cache, monk
     found = refine(record, inertia=rig.inertia)
     assert found.effects == ("coulomb_joint",)
     assert begun.count(False) == 2
+
+
+def test_a_likely_model_is_told_once_and_again_if_its_windows_changed(monkeypatch):
+    monkeypatch.setattr(_Judge, "__call__", lambda judge, trial: (trial.name, judge.bench.windows))
+    told, bench = [], SimpleNamespace(windows="whole")
+    judge = _Judge(bench, None, "joint", False, False, None, told.append)
+    first, last = SimpleNamespace(name="first"), SimpleNamespace(name="last")
+    for trial in (first, last, last):
+        judge.tell(trial)
+    assert told == [("first", "whole"), ("last", "whole")]
+    bench.windows = "cut"
+    assert judge.tell(last) == ("last", "cut")
+    assert told[2:] == [("last", "cut")]

@@ -35,8 +35,10 @@ def record(effects, seed=3, sigma=3e-5):
 
 @pytest.mark.parametrize("name", HIDDEN)
 def test_names_what_is_hidden(name):
-    found = jb.refine(record(HIDDEN[name]), inertia=RIG.inertia)
+    told = []
+    found = jb.refine(record(HIDDEN[name]), inertia=RIG.inertia, settled=told.append)
     assert set(found.effects) == set(HIDDEN[name])
+    assert [fit is found.fit for fit in told] == [False] * (len(told) - 1) + [True]
     assert found.verdict.complete
     assert found.fit.score.median < 1.05
     for parameter in ("backlash", "stiffness", "damping"):

@@ -175,7 +175,7 @@ def test_what_cannot_replace_a_simpler_rival_is_fitted_roughly(monkeypatch, behi
 
 @pytest.mark.parametrize(("fall", "misfit", "imitated"), [(50.0, 1.01, True), (150.0, 1.01, False), (50.0, 1.2, False)])
 def test_what_a_blurred_sensor_explains_as_well_is_no_evidence(monkeypatch, fall, misfit, imitated):
-    monkeypatch.setattr("jaxbacklash.criticism.search.blurred", lambda bench, trial: 100.0)
+    monkeypatch.setattr("jaxbacklash.criticism.unseen.blurred", lambda bench, trial: 100.0)
     before = Model(frozenset({"preload"}), cost=1000.0, misfit=misfit)
     after = Model(frozenset({"gravity", "preload"}), cost=1000.0 - 0.5 * fall)
     assert Search(Bench()).imitated(before, after) == imitated

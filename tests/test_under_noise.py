@@ -8,8 +8,8 @@ import jaxbacklash as jb
 from jaxbacklash.criticism import under_noise
 from jaxbacklash.criticism.along_motion import motion, own_torques
 from jaxbacklash.criticism.evidence import demanded
-from jaxbacklash.criticism.search import GLIMPSED
 from jaxbacklash.criticism.under_noise import blurred, own_rest, promises
+from jaxbacklash.criticism.unseen import GLIMPSED
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting.levenberg import Levenberg, Minimum
 from jaxbacklash.fitting.setup import base_system

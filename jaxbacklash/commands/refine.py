@@ -43,7 +43,7 @@ def run(
     held = reading.record(heldout) if heldout is not None else None
     folder = out_folder(out)
     system = _given(model, inertia)
-    # What other methods say of the model kept is worked out beside the scores of the ones on the way.
+    # What other methods say of the model that is likely kept is worked out beside the search for more.
     with progress(as_json) as tell, ThreadPoolExecutor(1) as aside:
         checked: list[Future[dict[str, Any]]] = []
         found = refine_record(
@@ -51,7 +51,7 @@ def run(
             translational=translational, seed=seed, progress=tell,
             settled=lambda fit: checked.append(aside.submit(other_methods, fit)),
         )  # fmt: skip
-        deliver(found, folder, as_json, tell, checked[0].result)
+        deliver(found, folder, as_json, tell, checked[-1].result)
 
 
 def _given(model: str, inertia: float | None) -> System | None:

@@ -18,6 +18,7 @@ from ..fitting.score import Score, score
 from ..fitting.search import TIES, inverse_information, silent
 from ..fitting.setup import base_system, first_guess, free_names
 from ..fitting.shooting import Problem, Unknowns
+from ..fitting.windows import Windows
 from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..system import System
@@ -100,7 +101,8 @@ def refine(
     translational : units of a translating mass
     seed : seed of everything random
     progress : told the stage in words and the share of the work done
-    settled : told the model kept as soon as it is scored, while the ones on the way to it still are
+    settled : told a model that leaves but noise as soon as it is scored, while the search still looks for more, and at last the
+        model kept, unless that was the last it was told
 
     Raises
     ------
@@ -122,17 +124,16 @@ def refine(
     else:
         names, model = free_names(system), "given"
     bench = Workbench(record, system, names, window, beside=heldout)
+    per_inertia = inertia is None and record.kind not in ABSOLUTE and model != "given"
+    judged = _Judge(bench, heldout, model, per_inertia, translational, start, settled)
     clock["prepare"] = time.perf_counter()
     with Foresight(bench) as ahead:
-        search = Search(bench, progress, ahead.after, ahead.member)
+        search = Search(bench, progress, ahead.after, ahead.member, judged.tell)
         steps = search.run()
     clock["search"] = time.perf_counter()
 
     progress("scoring predictions", 0.85)
-    per_inertia = inertia is None and record.kind not in ABSOLUTE and model != "given"
-    judged = _Judge(bench, heldout, model, per_inertia, translational, start)
-    last = judged(steps[-1].trial)
-    settled(last)
+    last = judged.tell(steps[-1].trial)
     fits = [*(judged(s.trial) for s in steps[:-1]), last]
     stages = tuple(Stage(s.added, s.dropped, fit, s.ranking, s.evidence) for s, fit in zip(steps, fits))
     clock["score"] = time.perf_counter()
@@ -152,10 +153,22 @@ class _Judge:
     """Makes a `Fit`, with scores and intervals, of every model kept."""
 
     def __init__(
-        self, bench: Workbench, heldout: Record | None, model: str, per_inertia: bool, translational: bool, start: Start | None
-    ) -> None:
+        self, bench: Workbench, heldout: Record | None, model: str, per_inertia: bool, translational: bool, start: Start | None,
+        settled: Callable[[Fit], object],
+    ) -> None:  # fmt: skip
         self.bench, self.heldout, self.model = bench, heldout, model
         self.per_inertia, self.translational, self.start = per_inertia, translational, start
+        self.settled = settled
+        self.told: tuple[Trial, Windows, Fit] | None = None
+
+    def tell(self, trial: Trial) -> Fit:
+        """The fit of a model that is likely the last, told at once, or that is the last: told unless it was the last one told."""
+        # Windows that were cut or weighed anew make another fit of the same model.
+        if self.told is None or self.told[0] is not trial or self.told[1] is not self.bench.windows:
+            fit = self(trial)
+            self.told = trial, self.bench.windows, fit
+            self.settled(fit)
+        return self.told[2]
 
     def __call__(self, trial: Trial) -> Fit:
         bench = self.bench

@@ -6,8 +6,6 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-import numpy as np
-
 from ..fitting.search import ADEQUATE, silent
 from ..mechanics import AbstractEffect
 from .candidates import Candidate, rank
@@ -26,14 +24,12 @@ from .evidence import (
 )
 from .memories import Member, families, may_replace, members
 from .steps import Step, leading
-from .tried import LOOSER, WHOLE, Tried
+from .tried import LOOSER, WHOLE
 from .tuning import apart
-from .under_noise import blurred, own_rest, promises
+from .unseen import GLIMPSED, MOST_EFFECTS, Unseen
 from .workbench import Trial, Workbench, adequate, strengths
 from .yielding import yielding
 
-MOST_EFFECTS = 5
-"""A model with more effects than this is no explanation any more."""
 TRIED = 4
 """Candidates that are really refitted at every stage."""
 CLOSE, HOPEFUL = 0.9, 0.2
@@ -45,15 +41,11 @@ LITTLE, MUCH, MOST = 0.1, 0.25, 0.5
 internal states have not been tried; and if it is an effect of the measuring chain."""
 FAR, GLIMPSE = 2.0, 0.03
 """Where a model is this far off, a law with internal states must show this share in the quick look to be tried."""
-GLIMPSED = 2.0
-"""How many times what is demanded of an addition the quick look must show before such a law is tried beside what explains."""
-LIKELY, HALF = 2, 0.5
-"""Guesses of such a law that are fitted at most, and share of a gain that is enough to promise where more may come of it."""
 SURE = 4.0
 """A gain predicted to be so many times what is demanded is no accident, so a fit that does not show it has stuck."""
 
 
-class Search(Tried):
+class Search(Unseen):
     """Adds effects to the joint one by one, and looks again at what it has added."""
 
     def __init__(
@@ -62,9 +54,11 @@ class Search(Tried):
         progress: Callable[[str, float], None] = silent,
         based: Callable[[Trial], object] = lambda base: None,
         seen: Callable[[Member], object] = lambda member: None,
+        likely: Callable[[Trial], object] = lambda last: None,
     ) -> None:
         super().__init__(bench, progress)
-        self.based, self.seen = based, seen  # told the fit of the joint alone, and laws with a memory that may come in
+        # Told the fit of the joint alone, laws with a memory that may come in, and a model that leaves but noise.
+        self.based, self.seen, self.likely = based, seen, likely
         self.level: dict[tuple[str, ...], Trial] = {}
 
     def base(self) -> Trial:
@@ -153,53 +147,9 @@ class Search(Tried):
         seen = replace(steps[-1], evidence={**steps[-1].evidence, name: evidence})
         return self.forward(settled, [*steps[:-1], seen, Step(settled, name, dropped, ())], MUCH)
 
-    def unseen(self, trial: Trial, least: float) -> tuple[str, Trial] | None:
-        """The best model with a law with internal states, by name, beside one fitted trajectory, if the law promises to take
-        ``least`` off the sum of squares."""
-        if not trial.tied or not adequate(trial) or self.bench.outright or len(trial.names) >= MOST_EFFECTS:
-            return None
-        found: list[tuple[str, Trial]] = []
-        for name, law in self.bench.laws.items():
-            if not law.states or law.family or name in trial.names:
-                continue
-            self.progress(f"looking for {name} under the noise", 0.65)
-            telling = promises(self.bench, trial, law, least)
-            # Its frequency is a guess, and what is fitted from one need not be the best there is.
-            for fall, effect in telling[:LIKELY]:
-                if fall > max(least, HALF * telling[0][0]):
-                    effects = {**self.bench.effects(trial), name: effect}
-                    fitted = self.bench.fit(effects, trial, tied=True, followed=True, patience=WHOLE)
-                    found.append((name, self._keep(self.retied(fitted))))
-        best = min(found, key=lambda one: one[1].criterion, default=None)
-        return None if best is None or self.imitated(trial, best[1]) else best
-
-    def imitated(self, before: Trial, after: Trial) -> bool:
-        """Whether a sensor that averages over a short time explains as much as an addition to a model that leaves little."""
-        if not (before.tied and after.tied and explained(before)):
-            return False
-        return 2.0 * (before.cost - after.cost) < blurred(self.bench, before) + demanded(self.bench)
-
-    def delayed(self, trial: Trial) -> bool:
-        """Whether a model's measured channel lags: how it was read between two samples is not known."""
-        return any(self.bench.laws[n].lag is not AbstractEffect.lag for n in trial.names)
-
     def runs_through(self, trial: Trial) -> bool:
         """Whether a model of a link that is not seen was judged by one run through the record, as it has to stay."""
         return bool(self.bench.outright) and (self.bench.grips(trial.names) or not adequate(trial))
-
-    def glimpsed(self, trial: Trial) -> bool:
-        """Whether the quick look sees a law with internal states that noise alone would hardly show.
-
-        The joint's own numbers can take in most of what a flexible link does, and leave too little to look unexplained.
-        """
-        laws = [law for name, law in self.bench.laws.items() if law.states and not law.family and name not in trial.names]
-
-        def seen(known: np.ndarray | None = None) -> bool:
-            quick, here = self.bench.quick, trial.system
-            evidence = [quick.evidence(here, trial.free, law.guesses(here, quick.motion), known) for law in laws]
-            return max(evidence, default=0.0) > GLIMPSED * demanded(self.bench)
-
-        return seen() and (not trial.tied or seen(own_rest(self.bench, trial)))
 
     def with_yielding(self, steps: list[Step]) -> list[Step]:
         """The path with friction in the joint that gives, where only that makes one trajectory of the record."""
@@ -324,6 +274,8 @@ class Search(Tried):
         current, steps = start, list(steps)
         while len(current.names) < MOST_EFFECTS:
             self.progress("judging absent effects" if not current.names else f"with {', '.join(sorted(current.names))}", 0.3)
+            if current.tied and explained(current):
+                self.likely(current)
             ranking = tuple(rank(self.bench, current))
             tried = self.attempts(current, ranking)
             promised = {c.name for c in ranking if c.gain > SURE * demanded(self.bench)}
@@ -370,10 +322,6 @@ class Search(Tried):
         """A step whose search was stuck and is no more, without what stood in for that."""
         trial, dropped = self.prune(relieved, spare=step.added)
         return replace(step, trial=trial, dropped=step.dropped + dropped)
-
-    def worth_a_look(self, before: Trial, after: Trial) -> float:
-        """What a law with internal states must promise in the place of an addition: the promise of a guess is a part of it."""
-        return max(GLIMPSED * demanded(self.bench), HALF * 2.0 * (before.cost - after.cost))
 
     def helps(self, current: Trial, tried: dict[str, Trial]) -> bool:
         """Whether any of some candidates brings what is demanded."""

@@ -1,0 +1,70 @@
+"""What a law with internal states has to say where noise hides it: looked for beside models that explain without it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..mechanics import AbstractEffect
+from .evidence import demanded, explained
+from .tried import WHOLE, Tried
+from .under_noise import blurred, own_rest, promises
+from .workbench import Trial, adequate
+
+MOST_EFFECTS = 5
+"""A model with more effects than this is no explanation any more."""
+GLIMPSED = 2.0
+"""How many times what is demanded of an addition the quick look must show before such a law is tried beside what explains."""
+LIKELY, HALF = 2, 0.5
+"""Guesses of such a law that are fitted at most, and share of a gain that is enough to promise where more may come of it."""
+
+
+class Unseen(Tried):
+    """Looks for laws with internal states under the noise."""
+
+    def unseen(self, trial: Trial, least: float) -> tuple[str, Trial] | None:
+        """The best model with a law with internal states, by name, beside one fitted trajectory, if the law promises to take
+        ``least`` off the sum of squares."""
+        if not trial.tied or not adequate(trial) or self.bench.outright or len(trial.names) >= MOST_EFFECTS:
+            return None
+        found: list[tuple[str, Trial]] = []
+        for name, law in self.bench.laws.items():
+            if not law.states or law.family or name in trial.names:
+                continue
+            self.progress(f"looking for {name} under the noise", 0.65)
+            telling = promises(self.bench, trial, law, least)
+            # Its frequency is a guess, and what is fitted from one need not be the best there is.
+            for fall, effect in telling[:LIKELY]:
+                if fall > max(least, HALF * telling[0][0]):
+                    effects = {**self.bench.effects(trial), name: effect}
+                    fitted = self.bench.fit(effects, trial, tied=True, followed=True, patience=WHOLE)
+                    found.append((name, self._keep(self.retied(fitted))))
+        best = min(found, key=lambda one: one[1].criterion, default=None)
+        return None if best is None or self.imitated(trial, best[1]) else best
+
+    def imitated(self, before: Trial, after: Trial) -> bool:
+        """Whether a sensor that averages over a short time explains as much as an addition to a model that leaves little."""
+        if not (before.tied and after.tied and explained(before)):
+            return False
+        return 2.0 * (before.cost - after.cost) < blurred(self.bench, before) + demanded(self.bench)
+
+    def worth_a_look(self, before: Trial, after: Trial) -> float:
+        """What a law with internal states must promise in the place of an addition: the promise of a guess is a part of it."""
+        return max(GLIMPSED * demanded(self.bench), HALF * 2.0 * (before.cost - after.cost))
+
+    def delayed(self, trial: Trial) -> bool:
+        """Whether a model's measured channel lags: how it was read between two samples is not known."""
+        return any(self.bench.laws[n].lag is not AbstractEffect.lag for n in trial.names)
+
+    def glimpsed(self, trial: Trial) -> bool:
+        """Whether the quick look sees a law with internal states that noise alone would hardly show.
+
+        The joint's own numbers can take in most of what a flexible link does, and leave too little to look unexplained.
+        """
+        laws = [law for name, law in self.bench.laws.items() if law.states and not law.family and name not in trial.names]
+
+        def seen(known: np.ndarray | None = None) -> bool:
+            quick, here = self.bench.quick, trial.system
+            evidence = [quick.evidence(here, trial.free, law.guesses(here, quick.motion), known) for law in laws]
+            return max(evidence, default=0.0) > GLIMPSED * demanded(self.bench)
+
+        return seen() and (not trial.tied or seen(own_rest(self.bench, trial)))
