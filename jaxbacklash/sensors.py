@@ -16,9 +16,12 @@ class SensorDelay(AbstractEffect):
 
 
 class SensorGain(AbstractEffect):
-    r"""The measured channel is scaled, :math:`z_\mathrm{meas} = g z`."""
+    r"""The measured channel is scaled, :math:`z_\mathrm{meas} = g z`.
 
-    g: Scalar = param(unit="1", null=1.0, lower=0.0, scale=0.01)
+    By half to twice: more is no calibration's error but a wrong unit, and a joint of other size would explain as much.
+    """
+
+    g: Scalar = param(unit="1", null=1.0, lower=0.5, upper=2.0, scale=0.01)
 
     def observe(self, value: Scalar) -> Scalar:
         return self.g * value

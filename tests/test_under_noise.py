@@ -8,6 +8,7 @@ import jaxbacklash as jb
 from jaxbacklash.criticism import under_noise
 from jaxbacklash.criticism.along_motion import motion, own_torques
 from jaxbacklash.criticism.evidence import demanded
+from jaxbacklash.criticism.search import Search
 from jaxbacklash.criticism.under_noise import blurred, own_rest, promises
 from jaxbacklash.criticism.unseen import GLIMPSED
 from jaxbacklash.criticism.workbench import Workbench
@@ -46,7 +47,9 @@ def test_a_flexible_link_under_ten_times_the_noise_is_promised_and_found():
     with_it = bench.fit({"flexible_link": start}, alone, tied=True, patience=60, followed=True)
     # The promise is that of a guessed frequency, near no link at all: the whole law keeps most of it, or more.
     assert 2.0 * (alone.cost - with_it.cost) > 0.5 * fall
-    assert with_it.value["flexible_link.J2"] == pytest.approx(LINK["J2"], rel=0.3)
+    name, found = Search(bench).unseen(alone, needed)
+    assert name == "flexible_link"
+    assert found.value["flexible_link.J2"] == pytest.approx(LINK["J2"], rel=0.1)
 
 
 @pytest.mark.slow
@@ -108,7 +111,10 @@ def test_a_delay_hides_no_flexible_link(kind):
     record, rig, _, _ = hidden("flexible_link", kind, 5, **LINK)
     late = round(3e-3 / record.dt)
     record = Record(record.t[:-late], {"x": record.channels["x"][late:], "z": record.channels["z"][:-late]})
-    assert min(glimpses(record, rig, 3e-3)) > 25.0
+    # Which of the two looks shows it, that at the record or that under the noise, depends on what the joint has taken in.
+    found = jb.refine(record, inertia=rig.inertia)
+    assert found.effects == ("flexible_link", "sensor_delay")
+    assert found.verdict.complete
 
 
 @pytest.mark.slow

@@ -4,7 +4,17 @@ from types import SimpleNamespace
 
 import pytest
 
+import jaxbacklash as jb
 from jaxbacklash.criticism.verdict import judge_rest
+from jaxbacklash.mechanics import catalogue
+
+
+def model(*names, misfit, freedom):
+    """A last model: the effects named, each somewhere inside its range."""
+    laws = catalogue()
+    joint = jb.base_motion_joint(inertia=3.0, backlash=0.02, stiffness=1e4, damping=20.0)
+    system = joint.with_effects(*(laws[name]() for name in names))
+    return SimpleNamespace(names=frozenset(names), free=(), system=system, misfit=misfit, cost=0.5 * freedom * misfit**2)
 
 
 def fit(rms, median):
@@ -14,7 +24,7 @@ def fit(rms, median):
 @pytest.mark.parametrize("names", [(), ("gravity",)])
 @pytest.mark.parametrize(("rms", "few"), [(1.02, False), (1.22, True)])
 def test_a_complete_model_that_misses_in_a_few_windows_says_so(names, rms, few):
-    final = SimpleNamespace(names=frozenset(names), misfit=1.01, cost=0.5 * 20_000 * 1.01**2)
+    final = model(*names, misfit=1.01, freedom=20_000)
     verdict = judge_rest(final, [fit(30.0, 20.0), fit(rms, 1.01)])
     assert verdict.complete
     assert f"{rms:.3g} times the noise" in verdict.text
@@ -25,7 +35,7 @@ def test_a_complete_model_that_misses_in_a_few_windows_says_so(names, rms, few):
 
 @pytest.mark.parametrize(("freedom", "complete"), [(2_000, True), (8_000, True), (20_000, False), (80_000, False)])
 def test_a_long_record_tells_a_little_more_than_noise_from_noise(freedom, complete):
-    final = SimpleNamespace(names=frozenset(("cubic_stiffness",)), misfit=1.032, cost=0.5 * freedom * 1.032**2)
+    final = model("cubic_stiffness", misfit=1.032, freedom=freedom)
     verdict = judge_rest(final, [fit(1.4, 1.3), fit(1.032, 1.03)])
     assert verdict.complete == complete
     assert ("noise explains" in verdict.text) != complete

@@ -73,6 +73,18 @@ def at_a_bound(trial: Trial, name: str) -> bool:
     )
 
 
+def at_a_limit(trial: Trial, name: str) -> bool:
+    """Whether a strength of an effect would have to leave the range that physics allows."""
+    found = values(trial.system.effects[name])
+    described = specs(trial.system.effects[name])
+    return any(
+        abs(found[n] - end) <= 1e-6 * abs(end)
+        for n in strengths(trial.system.effects[name])
+        for end in (described[n].lower, described[n].upper)
+        if np.isfinite(end) and end != described[n].null and f"{name}.{n}" in trial.free
+    )
+
+
 def _shapes(trial: Trial, name: str) -> dict[str, Spec]:
     """The free shape parameters of an effect: those that have no null value."""
     described = specs(trial.system.effects[name])
@@ -88,3 +100,34 @@ def significance(trial: Trial, name: str) -> float:
         for n in strengths(trial.system.effects[name]) if (full := f"{name}.{n}") in trial.free
     ]  # fmt: skip
     return float(max(found, default=0.0))
+
+
+def claim(trial: Trial, name: str) -> float:
+    """What leaving an effect out should cost in units of twice the cost, as far as the fit's own information tells (Wald 1943).
+
+    The strengths go to their null values, the shapes with them; all else moves to make up for it.
+    """
+    described, effect = specs(trial.system.effects[name]), values(trial.system.effects[name])
+    own = [n for n in strengths(trial.system.effects[name]) if f"{name}.{n}" in trial.free]
+    away = [trial.free.index(f"{name}.{n}") for n in own]
+    rest = [k for k, full in enumerate(trial.free) if full.partition(".")[0] != name]
+    step = np.array([effect[n] - (described[n].null or 0.0) for n in own]) / trial.scales[away]
+    cross = trial.schur[np.ix_(rest, away)]
+    held = trial.schur[np.ix_(away, away)] - cross.T @ np.linalg.pinv(trial.schur[np.ix_(rest, rest)], hermitian=True) @ cross
+    return float(step @ held @ step) / (max(1.0, trial.misfit**2) * trial.correlation)
+
+
+def led_on(bench: Workbench, before: Trial, after: Trial, name: str) -> bool:
+    """Whether an effect with friction beside it only led a stuck search on: the fall that it brought is none of its own.
+
+    Corners make the cost of one trajectory jagged, and a search that ends at one may be passed by any other direction.
+    """
+    if not (before.tied and after.tied and after.names == before.names | {name}):
+        return False
+    corners = any(bench.laws[n].slides for n in before.names)
+    return corners and explained(before) and claim(after, name) < demanded(bench)
+
+
+def worth(bench: Workbench, before: Trial, after: Trial, name: str) -> float:
+    """Evidence for an effect that is added: no more than its own claim where it only led a stuck search on."""
+    return min(gain(before, after), claim(after, name)) if led_on(bench, before, after, name) else gain(before, after)

@@ -18,9 +18,11 @@ from .evidence import (
     excess,
     explained,
     gain,
+    led_on,
     measures_only,
     shapeless,
     significance,
+    worth,
 )
 from .memories import Member, families, may_replace, members
 from .steps import Step, leading
@@ -39,8 +41,6 @@ CLEAR = 8.0
 LITTLE, MUCH, MOST = 0.1, 0.25, 0.5
 """Share of the excess that an addition must take away where a rest stays unexplained: at least; as long as laws with
 internal states have not been tried; and if it is an effect of the measuring chain."""
-FAR, GLIMPSE = 2.0, 0.03
-"""Where a model is this far off, a law with internal states must show this share in the quick look to be tried."""
 SURE = 4.0
 """A gain predicted to be so many times what is demanded is no accident, so a fit that does not show it has stuck."""
 
@@ -121,15 +121,33 @@ class Search(Unseen):
         if final.names and not any(t.misfit < NOISE_FLOOR for t in tried):
             tried += self.hidden(final)
         for trial in sorted(tried, key=lambda t: t.criterion)[:2]:
-            if gain(self.known.get((final.names, False), final), trial) < demanded(self.bench):
+            rest = not explained(final) and explained(trial)  # what free windows soak up counts for less than what is left
+            if not rest and gain(self.known.get((final.names, False), final), trial) < demanded(self.bench):
                 continue
             settled, dropped = self.prune(self.settle(trial))
             added = next((n for n in settled.names if self.bench.laws[n].states), None)
             if added is None:
                 continue
-            path = self.forward(settled, [replace(steps[0], trial=base), Step(settled, added, dropped, ())], MUCH)
+            path = self.one_piece(self.forward(settled, [replace(steps[0], trial=base), Step(settled, added, dropped, ())], MUCH))
             if path[-1].trial.tied and (not final.tied or path[-1].trial.criterion < final.criterion - demanded(self.bench)):
                 return path
+        return steps
+
+    def one_piece(self, steps: list[Step]) -> list[Step]:
+        """The path with the addition that makes one trajectory of windows that a law with internal states explains only apart.
+
+        It has a start to choose in every free window, and takes up there what another law would bring.
+        """
+        last = steps[-1].trial
+        if last.tied or not explained(last) or len(last.names) >= MOST_EFFECTS:
+            return steps
+        for c in [c for c in steps[-1].ranking if c.gain > 0.0 and c.name not in last.names][:TRIED]:
+            free = self.known.get((last.names | {c.name}, False)) or self.add(last, c)
+            self.progress(f"joining {', '.join(sorted(free.names))}", 0.6)
+            tied = self.bench.fit(self.bench.effects(free), free, tied=True, patience=WHOLE)
+            if explained(tied):
+                settled, dropped = self.prune(self._keep(tied), spare=c.name)
+                return self.forward(settled, [*steps, Step(settled, c.name, dropped, ())], MUCH)
         return steps
 
     def with_unseen(self, steps: list[Step]) -> list[Step]:
@@ -288,11 +306,12 @@ class Search(Unseen):
                 if self.helps(loose, others) or not self.helps(current, {n: t for n, t in tried.items() if t.tied}):
                     current, tried = loose, others
             tried = self.finished(current, tried)
-            evidence = {n: gain(current, t) for n, t in tried.items()}
+            evidence = {n: worth(self.bench, current, t, n) for n, t in tried.items()}
             steps[-1] = replace(steps[-1], ranking=ranking, evidence=evidence)
             if not tried:
                 break
-            name = self.best(current, tried, least)
+            real = {n: t for n, t in tried.items() if not led_on(self.bench, current, t, n)}
+            name = self.best(current, real or tried, least)
             if evidence[name] < demanded(self.bench) or self.nibbles(current, tried[name], least):
                 break
             if self.delayed(current) and self.imitated(current, tried[name]):
@@ -303,6 +322,8 @@ class Search(Unseen):
                 steps[-1] = self.freed(steps[-1], relieved)
                 current = steps[-1].trial
                 continue
+            if not real:
+                break
             hidden = None if self.bench.laws[name].states else self.unseen(current, self.worth_a_look(current, tried[name]))
             if hidden is not None and tried[name].criterion - hidden[1].criterion > demanded(self.bench):
                 # What acts through a state under the noise leaves less: it goes first.
@@ -419,6 +440,7 @@ class Search(Unseen):
             simpler = {n: self.without(trial, n) for n in doubtful}
             # A model with as many parameters is another one, not a simpler one.
             losses = {n: gain(t, trial) for n, t in simpler.items() if len(t.free) < len(trial.free)}
+            losses |= {n: min(loss, 0.0) for n, loss in losses.items() if led_on(self.bench, simpler[n], trial, n)}
             needless = [n for n, loss in losses.items() if loss < demanded(self.bench)]
             if not needless:
                 return trial, tuple(dropped)
@@ -437,8 +459,6 @@ class Search(Unseen):
             if not law.states or law.family or name in start.names or any(t.misfit < NOISE_FLOOR for t in found):
                 continue
             guesses = law.guesses(start.system, self.bench.quick.motion)
-            if start.misfit > FAR and self.bench.quick.share(start.system, start.free, guesses) < GLIMPSE:
-                continue
             self.progress(f"trying {name}", 0.6)
             for effect in self.bench.quick.choose(start.system, start.free, guesses, keep=2):
                 effects: dict[str, AbstractEffect] = {**self.bench.effects(start), name: effect}

@@ -23,7 +23,7 @@ ROUGH = 1.0
 LOOSER = 1.0
 """A fit that comes out so much lower when it is given its turn again had stuck."""
 ROUNDS, CLEARLY = 8, 0.97
-"""How often windows are begun again from the data, and the share of the misfit that must remain at most for it to go on."""
+"""How often windows are let go or begun again, and the share of the misfit that must remain at most for it to go on."""
 WHOLE = 60
 """Linearisations allowed to a model that is kept."""
 
@@ -146,9 +146,12 @@ class Tried:
 
     def retied(self, tied: Trial) -> Trial:
         """A tied model or, where that is better, the same by way of free windows: one long trajectory has many minima."""
-        free = self.bench.fit(self.bench.effects(tied), tied, patience=WHOLE)
-        self._keep(free)
-        again = self.bench.fit(self.bench.effects(free), free, tied=True, patience=WHOLE)
+        for _ in range(ROUNDS):
+            free = self._keep(self.bench.fit(self.bench.effects(tied), tied, patience=WHOLE))
+            again = self.bench.fit(self.bench.effects(free), free, tied=True, patience=WHOLE)
+            if not tied.cost - again.cost > LOOSER:
+                break
+            tied = again
         return min(tied, again, key=lambda t: t.cost)
 
     def renewed(self, trial: Trial) -> Trial:

@@ -1,8 +1,9 @@
 """What a law with internal states promises beside a fitted trajectory, even where noise hides it from the quick look.
 
 A law that is weak exerts on the model's own motion, which is free of noise, a torque that is known in advance up to its size. The
-same program that fits the model fits it again with small shares of that torque applied as a force: how the misfit answers is the
-score of the law with everything else free to move, as in a score test (Rao 1948), at no new compilation.
+same program that fits the model looks at it with small shares of that torque applied as a force, and at what its next step would
+make up for: how the misfit answers is the score of the law with everything else free to move, as in a score test (Rao 1948), at
+no new compilation.
 """
 
 from __future__ import annotations
@@ -19,12 +20,10 @@ from .along_motion import motion, own_torques
 from .quick_look import QuickLook
 from .workbench import Trial, Workbench
 
-SHARE = 0.01
+SHARE = 0.001
 """Part of a guessed law's torque that is applied, and twice as much: too little to bend the trajectory."""
 FURTHER, BENT = 4.0, 0.25
 """A third such part, at which the answer is foretold, and how far off it may be."""
-STEPS = 3
-"""Steps that the fit gets to answer with, the first where it had ended."""
 LOST = 1e3
 """How many times the cost of a trial with dry friction an answer exceeds that has not followed."""
 BLUR = 0.3
@@ -100,9 +99,12 @@ def blurred(bench: Workbench, trial: Trial) -> float:
 
 
 def answered(problem: Problem, unknowns: Unknowns) -> tuple[float, Prediction]:
-    """Cost and trajectory of a fit that has few steps to answer a small change of its problem with."""
-    stats = minimise(problem, unknowns, Levenberg(atol=1e-4, damping=1e-9, limit=STEPS, costing=True)).stats
-    return float(stats["cost"]), stats["predicted"]
+    """Cost to which a fit would come down after a small change of its problem, and its trajectory before it moves.
+
+    The step is not taken: along a curved valley that takes many, whose ends differ by more than so small a change does.
+    """
+    stats = minimise(problem, unknowns, Levenberg(limit=1)).stats
+    return float(stats["cost"] - stats["promise"]), stats["predicted"]
 
 
 def parabola(once: float, twice: float, share: float) -> tuple[float, float]:

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from ..fitting import Fit
+from .evidence import at_a_limit
 from .workbench import Trial
 
 NEAR_NOISE, SIGMAS = 1.01, 3.0
@@ -38,7 +39,8 @@ def judge_rest(final: Trial, fits: list[Fit]) -> Verdict:
     """Whether the last model leaves nothing but noise."""
     first, last = fits[0], fits[-1]
     most = most_of_noise(final)
-    complete = final.misfit < most and last.score.median < 1.1
+    strained = [name for name in sorted(final.names) if at_a_limit(final, name)]
+    complete = final.misfit < most and last.score.median < 1.1 and not strained
     named = ", ".join(sorted(final.names))
     left = "what is left is noise"
     if last.score.rms > 1.1:
@@ -59,4 +61,6 @@ def judge_rest(final: Trial, fits: list[Fit]) -> Verdict:
         if most < final.misfit < LITTLE_MORE:
             text += f" ({final.misfit:.3f} over the whole record, of which noise explains {most:.3f} at most)"
         text += ", and no effect in the catalogue explains the rest."
+        if strained:
+            text += f" {' and '.join(strained)} at the end of its range: more likely it stands in for something else."
     return Verdict(bool(complete), text)

@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 import optimistix as optx
 
-from .arrow import solve
+from .arrow import ArrowSolution, solve
 from .shooting import Blocks, Prediction, Problem, Unknowns, linearise, shoot
 
 Array = Any
@@ -45,14 +45,13 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
     """Levenberg-Marquardt whose linear algebra knows the arrow (`jaxbacklash.fitting.arrow`).
 
     ``fn`` is not differentiated as a whole: ``args`` is the `Problem`, whose blocks are built by
-    `jaxbacklash.fitting.shooting.linearise`. The first five are those of `jaxbacklash.fitting.levenberg.Levenberg`.
+    `jaxbacklash.fitting.shooting.linearise`. The first four are those of `jaxbacklash.fitting.levenberg.Levenberg`.
     """
 
     rtol: Array = 0.0
     atol: Array = 1e-3
     damping: Array = 1e-3
     limit: Array = 60
-    costing: Array = False
     norm: Any = eqx.field(default=optx.max_norm, static=True)
 
     def init(self, fn: Any, y: Unknowns, args: Problem, options: Any, f_struct: Any, aux_struct: Any, tags: Any) -> ArrowState:
@@ -72,9 +71,7 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         better = (shot.cost < state.blocks.cost) | (state.steps == 0)
         pick = lambda new, old: jnp.where(better, new, old)  # noqa: E731
         fell = pick(state.blocks.cost - shot.cost, state.fell)
-        # Derivatives of a last step that only its cost is asked of would lead nowhere.
-        needed = better & ~(self.costing & (state.steps > 0) & (state.steps + 1 >= self.limit))
-        blocks = jax.lax.cond(needed, lambda: _linearise(args, state.trial, shot), lambda: state.blocks)
+        blocks = jax.lax.cond(better, lambda: _linearise(args, state.trial, shot), lambda: state.blocks)
         blocks = eqx.tree_at(lambda b: b.cost, blocks, pick(shot.cost, state.blocks.cost))
         y = jax.tree.map(pick, state.trial, y)
         # Where dry friction makes the cost jagged, steps that only just help lead into corners.
@@ -88,7 +85,7 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         theta = jnp.clip(y.theta + solution.theta, args.lower, args.upper)
         theta = jnp.where(args.shrink, _keep_sign(args, y.theta, theta), theta)
         trial = Unknowns(theta, y.starts + solution.local[:, :n].T, y.coefficients + solution.local[:, n:])
-        promise = -0.5 * (jnp.sum(blocks.slope * solution.local) + jnp.sum(blocks.slope_theta * solution.theta))
+        promise = _promise(blocks, solution)
         predicted = jax.tree.map(pick, shot.predicted, state.predicted)
         steps = state.steps + 1
         gained = state.mark[0] - blocks.cost > WORTH * self._least(args, blocks.cost)
@@ -115,7 +112,12 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
     ) -> Any:
         undamped = solve(state.blocks, jnp.asarray(0.0), args.windows.used)
         stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps}
-        return y, aux, stats | {"schur": undamped.schur, "pull": undamped.pull}
+        return y, aux, stats | {"schur": undamped.schur, "pull": undamped.pull, "promise": _promise(state.blocks, undamped)}
+
+
+def _promise(blocks: Blocks, solution: ArrowSolution) -> Array:
+    """By how much a step lowers the cost as far as its derivatives tell."""
+    return -0.5 * (jnp.sum(blocks.slope * solution.local) + jnp.sum(blocks.slope_theta * solution.theta))
 
 
 def _rows(problem: Problem) -> Array:

@@ -23,20 +23,18 @@ class Levenberg(eqx.Module):
     It ends when a full step promises to lower half the sum of squares by less than ``atol`` (in units of the noise, so 1e-3 means
     that no parameter would move by 5 % of its standard error), or by less than ``rtol`` of what it exceeds the noise by, when a
     dozen steps together gained hardly more than that, or after ``limit`` steps, kept or turned down; a limit of 1 only looks at
-    the start. ``damping`` is the first. ``costing`` asks for no more than the cost of the last step that the limit allows: its
-    ``schur`` and ``pull`` are those of the step before.
+    the start. ``damping`` is the first.
     """
 
     rtol: Array = eqx.field(default=0.0, converter=np.asarray)
     atol: Array = eqx.field(default=1e-3, converter=np.asarray)
     damping: Array = eqx.field(default=1e-3, converter=np.asarray)
     limit: Array = eqx.field(default=60, converter=np.asarray)
-    costing: Array = eqx.field(default=False, converter=np.asarray)
 
 
 class Minimum(eqx.Module):
-    """Where a search ended: ``value``, and ``stats``: the ``cost``, what was ``predicted``, the ``steps`` taken, the ``schur``
-    information and the ``pull``, both undamped."""
+    """Where a search ended: ``value``, and ``stats``: the ``cost``, what was ``predicted``, the ``steps`` taken, and undamped the
+    ``schur`` information, the ``pull`` and the ``promise``, by how much the next step would lower the cost."""
 
     value: Unknowns
     stats: dict[str, Any]
@@ -69,6 +67,6 @@ def _minimise(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int)
         # optimistix asks only for its structure: the solver builds residuals and blocks together.
         return jnp.zeros(())
 
-    solver = ArrowLevenbergMarquardt(rtol=how.rtol, atol=how.atol, damping=how.damping, limit=how.limit, costing=how.costing)
+    solver = ArrowLevenbergMarquardt(rtol=how.rtol, atol=how.atol, damping=how.damping, limit=how.limit)
     found: optx.Solution = optx.least_squares(residual, solver, start, args=problem, max_steps=max_steps, throw=False)
     return found.value, found.stats
