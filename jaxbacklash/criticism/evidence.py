@@ -118,14 +118,15 @@ def claim(trial: Trial, name: str) -> float:
 
 
 def led_on(bench: Workbench, before: Trial, after: Trial, name: str) -> bool:
-    """Whether an effect with friction beside it only led a stuck search on: the fall that it brought is none of its own.
+    """Whether an effect only led a stuck search on: the fall that it brought is none of its own.
 
-    Corners make the cost of one trajectory jagged, and a search that ends at one may be passed by any other direction.
+    Dry friction's corners make the cost of one trajectory jagged, and some searches are not at their end: any other direction
+    may pass them.
     """
     if not (before.tied and after.tied and after.names == before.names | {name}):
         return False
-    corners = any(bench.laws[n].slides for n in before.names)
-    return corners and explained(before) and claim(after, name) < demanded(bench)
+    stuck = not before.done or any(bench.laws[n].slides for n in before.names)
+    return stuck and explained(before) and claim(after, name) < demanded(bench)
 
 
 def worth(bench: Workbench, before: Trial, after: Trial, name: str) -> float:

@@ -23,7 +23,7 @@ ROUGH = 1.0
 LOOSER = 1.0
 """A fit that comes out so much lower when it is given its turn again had stuck."""
 ROUNDS, CLEARLY = 8, 0.97
-"""How often windows are let go or begun again, and the share of the misfit that must remain at most for it to go on."""
+"""How often a search goes on or begins again, and the share of the misfit that must remain at most for it to go on."""
 WHOLE = 60
 """Linearisations allowed to a model that is kept."""
 
@@ -52,12 +52,12 @@ class Tried:
                 return self._keep(tied)
             if (through := self.let_go(trial)) is not None:
                 return through
+            if adequate(tied) and not tied.done and not self.dry(tied):
+                tied = self.finish(tied)
             # A tied search that has stuck tells nothing about the model.
             if adequate(tied) and tied.done:
                 return self._keep(tied)
-        if not trial.done:
-            trial = self._keep(self.bench.fit(self.bench.effects(trial), trial, tied=trial.tied, patience=WHOLE))
-        return trial
+        return trial if trial.done else self.finish(trial)
 
     def let_go(self, free: Trial) -> Trial | None:
         """The same model tied by way of cuts where dry friction does not let the search through, if that helps.
@@ -271,8 +271,13 @@ class Tried:
         return self.known[key]
 
     def finish(self, trial: Trial) -> Trial:
-        """The trial fitted to the end."""
-        return self._keep(self.bench.fit(self.bench.effects(trial), trial, tied=trial.tied, patience=WHOLE))
+        """The trial fitted to the end, as long as that helps: along a curved valley it is a long way."""
+        for _ in range(ROUNDS):
+            cost = trial.cost
+            trial = self._keep(self.bench.fit(self.bench.effects(trial), trial, tied=trial.tied, patience=WHOLE))
+            if trial.done or not cost - trial.cost > LOOSER:
+                break
+        return trial
 
     def _keep(self, trial: Trial) -> Trial:
         key = (trial.names, trial.tied)
