@@ -143,9 +143,11 @@ def test_more_than_an_effect_can_account_for_is_first_looked_for_without_it(monk
 def test_a_tied_fit_that_stuck_is_not_believed_over_free_windows():
     free = Model(frozenset({"gravity"}), cost=100.0, tied=False, misfit=1.0)
     stuck = Model(frozenset({"gravity"}), cost=150.0, misfit=1.2, done=False)
-    assert Search(Bench(stuck)).settle(free) is free
+    assert Search(Bench(stuck, replace(stuck, cost=149.5))).settle(free) is free
     honest = Model(frozenset({"gravity"}), cost=150.0, misfit=1.2, done=True)
     assert Search(Bench(honest)).settle(free) is honest
+    creeping = Model(frozenset({"gravity"}), cost=180.0, misfit=1.24, done=False)
+    assert Search(Bench(creeping, stuck, honest)).settle(free) is honest
 
 
 def test_close_candidates_are_finished_before_one_is_chosen():

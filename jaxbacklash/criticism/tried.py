@@ -281,6 +281,8 @@ class Tried:
 
     def _keep(self, trial: Trial) -> Trial:
         key = (trial.names, trial.tied)
-        if key not in self.known or trial.criterion < self.known[key].criterion:
+        known = self.known.get(key)
+        # Of two that are as good the one that has arrived.
+        if known is None or (trial.criterion, not trial.done) < (known.criterion, not known.done):
             self.known[key] = trial
         return self.known[key]
