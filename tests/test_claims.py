@@ -92,7 +92,6 @@ def test_windows_explained_apart_are_joined_by_what_lets_one_trajectory_follow(m
     search.known[both.names, False] = both
     monkeypatch.setattr(search, "prune", lambda trial, spare=None: (trial, ()))
     monkeypatch.setattr(search, "forward", lambda start, steps, least: steps)
-    ranking = (SimpleNamespace(name="drift", gain=-1.0), SimpleNamespace(name="cubic", gain=4.0))
-    steps = search.one_piece([Step(apart, "link", (), ranking)])
+    steps = search.one_piece([Step(apart, "link", (), (), {"drift": -9.0, "cubic": -0.3})])
     assert [s.added for s in steps] == (["link", "cubic"] if misfit < 1.03 else ["link"])
     assert steps[-1].trial.tied == (misfit < 1.03)

@@ -28,7 +28,7 @@ from .memories import Member, families, may_replace, members
 from .steps import Step, leading
 from .tried import LOOSER, WHOLE
 from .tuning import apart
-from .unseen import GLIMPSED, MOST_EFFECTS, Unseen
+from .unseen import GLIMPSED, LIKELY, MOST_EFFECTS, Unseen
 from .workbench import Trial, Workbench, adequate, strengths
 from .yielding import yielding
 
@@ -141,13 +141,15 @@ class Search(Unseen):
         last = steps[-1].trial
         if last.tied or not explained(last) or len(last.names) >= MOST_EFFECTS:
             return steps
-        for c in [c for c in steps[-1].ranking if c.gain > 0.0 and c.name not in last.names][:TRIED]:
-            free = self.known.get((last.names | {c.name}, False)) or self.add(last, c)
+        for name in sorted(steps[-1].evidence, key=steps[-1].evidence.__getitem__, reverse=True)[:LIKELY]:
+            free = self.known.get((last.names | {name}, False))
+            if free is None or (free.names, True) in self.known:
+                continue
             self.progress(f"joining {', '.join(sorted(free.names))}", 0.6)
-            tied = self.bench.fit(self.bench.effects(free), free, tied=True, patience=WHOLE)
+            tied = self._keep(self.bench.fit(self.bench.effects(free), free, tied=True, patience=WHOLE))
             if explained(tied):
-                settled, dropped = self.prune(self._keep(tied), spare=c.name)
-                return self.forward(settled, [*steps, Step(settled, c.name, dropped, ())], MUCH)
+                settled, dropped = self.prune(tied, spare=name)
+                return self.forward(settled, [*steps, Step(settled, name, dropped, ())], MUCH)
         return steps
 
     def with_unseen(self, steps: list[Step]) -> list[Step]:
