@@ -275,7 +275,7 @@ class Tried:
         for _ in range(ROUNDS):
             cost = trial.cost
             trial = self._keep(self.bench.fit(self.bench.effects(trial), trial, tied=trial.tied, patience=WHOLE))
-            if trial.done or not cost - trial.cost > LOOSER:
+            if trial.done or not cost - trial.cost > 0.5 * demanded(self.bench):
                 break
         return trial
 
