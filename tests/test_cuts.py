@@ -53,7 +53,8 @@ def test_only_dry_friction_is_a_reason_to_cut(monkeypatch):
     monkeypatch.setattr(tried, "cut_free", lambda *_: pytest.fail("asked"))
     names = frozenset({"preload"})
     free = Model(names, cost=90.0, tied=False)
-    assert tried.Tried(Rubbing(Model(names, cost=150.0, done=False, misfit=1.2))).settle(free) is free
+    stuck = Model(names, cost=150.0, done=False, misfit=1.2)
+    assert tried.Tried(Rubbing(stuck, stuck)).settle(free) is free
 
 
 def test_a_cut_is_paid_for():
