@@ -68,21 +68,19 @@ def shapeless(trial: Trial, name: str, slowest: float = 0.0) -> bool:
 def at_a_bound(trial: Trial, name: str) -> bool:
     """Whether a shape of an effect stands at the end of its range, where the law may be another's limit."""
     found = values(trial.system.effects[name])
-    return any(
-        found[n] <= s.lower * (1.0 + 1e-6) or found[n] >= s.upper * (1.0 - 1e-6) for n, s in _shapes(trial, name).items()
-    )
+    return any(_end(found[n], s) is not None for n, s in _shapes(trial, name).items())
 
 
 def at_a_limit(trial: Trial, name: str) -> bool:
     """Whether a strength of an effect would have to leave the range that physics allows."""
-    found = values(trial.system.effects[name])
-    described = specs(trial.system.effects[name])
-    return any(
-        abs(found[n] - end) <= 1e-6 * abs(end)
-        for n in strengths(trial.system.effects[name])
-        for end in (described[n].lower, described[n].upper)
-        if np.isfinite(end) and end != described[n].null and f"{name}.{n}" in trial.free
-    )
+    found, described = values(trial.system.effects[name]), specs(trial.system.effects[name])
+    own = [n for n in strengths(trial.system.effects[name]) if f"{name}.{n}" in trial.free]
+    return any(_end(found[n], described[n]) not in (None, described[n].null) for n in own)
+
+
+def _end(value: float, spec: Spec) -> float | None:
+    """The end of its range at which a parameter stands; None inside."""
+    return next((e for e in (spec.lower, spec.upper) if np.isfinite(e) and abs(value - e) <= 1e-6 * abs(e)), None)
 
 
 def _shapes(trial: Trial, name: str) -> dict[str, Spec]:
@@ -131,4 +129,5 @@ def led_on(bench: Workbench, before: Trial, after: Trial, name: str) -> bool:
 
 def worth(bench: Workbench, before: Trial, after: Trial, name: str) -> float:
     """Evidence for an effect that is added: no more than its own claim where it only led a stuck search on."""
-    return min(gain(before, after), claim(after, name)) if led_on(bench, before, after, name) else gain(before, after)
+    evidence = gain(before, after)
+    return min(evidence, claim(after, name)) if led_on(bench, before, after, name) else evidence
