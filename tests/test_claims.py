@@ -12,6 +12,7 @@ from jaxbacklash.criticism.search import Search
 from jaxbacklash.criticism.steps import Step
 from jaxbacklash.criticism.verdict import judge_rest
 from jaxbacklash.criticism.workbench import Trial
+from jaxbacklash.mechanics import catalogue
 
 from .number_models import Model
 
@@ -95,3 +96,21 @@ def test_windows_explained_apart_are_joined_by_what_lets_one_trajectory_follow(m
     steps = search.one_piece([Step(apart, "link", (), (), {"drift": -9.0, "cubic": -0.3})])
     assert [s.added for s in steps] == (["link", "cubic"] if misfit < 1.03 else ["link"])
     assert steps[-1].trial.tied == (misfit < 1.03)
+
+
+@pytest.mark.parametrize(("reached", "cost", "kept"), [(1.0, 60.0, "static"), (1.0, 99.0, "lugre"), (1.03, 60.0, "lugre")])
+def test_a_law_that_no_trajectory_follows_gives_way_to_several_without_states(monkeypatch, reached, cost, kept):
+    """The first of those brings less than the law with internal states; only where its path ends better is that taken."""
+    before = Model(frozenset({"asymmetric_gap"}), cost=200.0, misfit=1.2)
+    spring = Model(frozenset({"asymmetric_gap", "gap_spring"}), cost=150.0, misfit=1.1)
+    soft = Model(frozenset({"asymmetric_gap", "lugre"}), cost=100.0, misfit=1.02)
+    both = Model(frozenset({"asymmetric_gap", "gap_spring", "coulomb_ground"}), cost=cost)
+    laws = {name: catalogue()[name] for name in ("asymmetric_gap", "gap_spring", "coulomb_ground", "lugre")}
+    search = Search(SimpleNamespace(laws=laws, record=SimpleNamespace(samples=1000), static=laws))
+    search.known[soft.names, False] = replace(soft, tied=False, misfit=reached)
+    search.known[spring.names, True] = spring
+    monkeypatch.setattr(search, "settle", lambda trial: trial)
+    monkeypatch.setattr(search, "forward", lambda start, steps, least: [*steps, Step(both, "coulomb_ground", (), ())])
+    path = [Step(before, None, (), (), {"gap_spring": 90.0, "lugre": 190.0}), Step(soft, "lugre", (), ())]
+    steps = search.with_static(path)
+    assert [s.trial for s in steps] == ([before, spring, both] if kept == "static" else [before, soft])

@@ -26,7 +26,7 @@ from .evidence import (
 )
 from .memories import Member, families, may_replace, members
 from .steps import Step, leading
-from .tried import LOOSER, WHOLE
+from .tried import LOOSER, WHOLE, follows
 from .tuning import apart
 from .unseen import GLIMPSED, LIKELY, MOST_EFFECTS, Unseen
 from .workbench import Trial, Workbench, adequate, strengths
@@ -86,6 +86,7 @@ class Search(Unseen):
             steps = self.with_hidden(steps)
             if not explained(steps[-1].trial):
                 steps = self.forward(steps[-1].trial, steps, LITTLE)
+        steps = self.with_static(steps)
         steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(self.with_yielding(self.with_unseen(steps))))))
         return steps
 
@@ -132,6 +133,28 @@ class Search(Unseen):
             if path[-1].trial.tied and (not final.tied or path[-1].trial.criterion < final.criterion - demanded(self.bench)):
                 return path
         return steps
+
+    def with_static(self, steps: list[Step]) -> list[Step]:
+        """Another path, without a law with internal states whose free windows no trajectory follows, if it ends better.
+
+        Alone such a law may do the work of several without, the first of which then did less.
+        """
+        final = steps[-1].trial
+        came = next((i for i, s in enumerate(steps) if s.added and self.bench.laws[s.added].states), None)
+        free = self.known.get((final.names, False))
+        if came is None or not final.tied or free is None or follows(final, free):
+            return steps
+        before = steps[came - 1]
+        known = {n: self.known.get((before.trial.names | {n}, before.trial.tied)) for n in before.evidence}
+        helpful = self.clear(before.trial, {n: t for n, t in known.items() if t is not None}, MUCH)
+        if not helpful:
+            return steps
+        name = self.best(before.trial, helpful, MUCH)
+        settled = self.settle(helpful[name])
+        path = self.forward(settled, [*steps[:came], Step(settled, name, (), ())], MUCH)
+        other = path[-1].trial
+        ahead = other.tied and explained(other) and gain(final, other) > demanded(self.bench)
+        return path if ahead else steps
 
     def one_piece(self, steps: list[Step]) -> list[Step]:
         """The path with the addition that makes one trajectory of windows that a law with internal states explains only apart.
