@@ -114,3 +114,30 @@ def test_a_law_that_no_trajectory_follows_gives_way_to_several_without_states(mo
     path = [Step(before, None, (), (), {"gap_spring": 90.0, "lugre": 190.0}), Step(soft, "lugre", (), ())]
     steps = search.with_static(path)
     assert [s.trial for s in steps] == ([before, spring, both] if kept == "static" else [before, soft])
+
+
+def test_a_search_keeps_no_model_twice(monkeypatch):
+    """Each of two of a family is better seen from the other, as one is judged on free windows and the other is not."""
+    costs = {"dahl": 50.0, "lugre": 40.0}
+
+    def attempts(current, ranking):
+        other = {"dahl": "lugre", "lugre": "dahl"}.get(next(iter(current.names), ""), "dahl")
+        ahead = current.cost - 20.0  # whatever stands now, the other one is ahead of it
+        return {other: Model(frozenset({other}), cost=ahead, tied=False)}
+
+    laws = {name: catalogue()[name] for name in costs}
+    search = Search(SimpleNamespace(laws=laws, static={}, outright=()))
+    monkeypatch.setattr("jaxbacklash.criticism.search.rank", lambda *_: ())
+    for name, does in {
+        "attempts": attempts,
+        "finished": lambda current, tried: tried,
+        "delayed": lambda current: False,
+        "relieved": lambda before, after: before,
+        "loosened": lambda trial: trial,
+        "settle": lambda trial: Model(trial.names, cost=costs[next(iter(trial.names))]),
+        "prune": lambda trial, spare=None: (trial, ()),
+    }.items():
+        monkeypatch.setattr(search, name, does)
+    base = Model(frozenset(), cost=500.0)
+    steps = search.forward(base, [Step(base, None, (), ())], 0.25)
+    assert [sorted(s.trial.names) for s in steps] == [[], ["dahl"], ["lugre"]]

@@ -330,7 +330,9 @@ class Search(Unseen):
                 others = self.attempts(loose, ranking)
                 if self.helps(loose, others) or not self.helps(current, {n: t for n, t in tried.items() if t.tied}):
                     current, tried = loose, others
-            tried = self.finished(current, tried)
+            # Two of a family may each look better from the other, one with free windows and one without: none is kept twice.
+            kept = {s.trial.names for s in steps}
+            tried = self.finished(current, {n: t for n, t in tried.items() if t.names not in kept})
             evidence = {n: worth(self.bench, current, t, n) for n, t in tried.items()}
             steps[-1] = replace(steps[-1], ranking=ranking, evidence=evidence)
             if not tried:
@@ -359,8 +361,11 @@ class Search(Unseen):
                 # It soaked up what free windows leave, and no trajectory follows it: what acts without a state goes first.
                 name = self.best(current, plain, least)
                 settled = self.settle(plain[name])
+            pruned, dropped = self.prune(settled, spare=name)
+            if pruned.names in kept:
+                break
             replaced = tuple(sorted(current.names - tried[name].names))
-            current, dropped = self.prune(settled, spare=name)
+            current = pruned
             steps.append(Step(current, name, replaced + dropped, ()))
         return steps
 
