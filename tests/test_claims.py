@@ -105,15 +105,21 @@ def test_a_law_that_no_trajectory_follows_gives_way_to_several_without_states(mo
     spring = Model(frozenset({"asymmetric_gap", "gap_spring"}), cost=150.0, misfit=1.1)
     soft = Model(frozenset({"asymmetric_gap", "lugre"}), cost=100.0, misfit=1.02)
     both = Model(frozenset({"asymmetric_gap", "gap_spring", "coulomb_ground"}), cost=cost)
-    laws = {name: catalogue()[name] for name in ("asymmetric_gap", "gap_spring", "coulomb_ground", "lugre")}
+    laws = {name: catalogue()[name] for name in ("asymmetric_gap", "gap_spring", "coulomb_ground", "dahl", "lugre")}
     search = Search(SimpleNamespace(laws=laws, record=SimpleNamespace(samples=1000), static=laws))
     search.known[soft.names, False] = replace(soft, tied=False, misfit=reached)
     search.known[spring.names, True] = spring
     monkeypatch.setattr(search, "settle", lambda trial: trial)
     monkeypatch.setattr(search, "forward", lambda start, steps, least: [*steps, Step(both, "coulomb_ground", (), ())])
-    path = [Step(before, None, (), (), {"gap_spring": 90.0, "lugre": 190.0}), Step(soft, "lugre", (), ())]
+    kin = replace(soft, names=frozenset({"asymmetric_gap", "dahl"}))  # came first, and gave way to another of its family
+    tried = {"gap_spring": 90.0, "dahl": 190.0}
+    path = [Step(before, None, (), (), tried), Step(kin, "dahl", (), ()), Step(soft, "lugre", (), ())]
     steps = search.with_static(path)
-    assert [s.trial for s in steps] == ([before, spring, both] if kept == "static" else [before, soft])
+    found = [s.trial for s in steps]
+    assert found == ([before, spring, both] if kept == "static" else [before, kin, soft])
+    search.known[spring.names, False] = replace(spring, tied=False, misfit=1.0)
+    static = [*path, Step(spring, "gap_spring", ("lugre",), ())]
+    assert search.with_static(static) is static
 
 
 def test_a_search_keeps_no_model_twice(monkeypatch):

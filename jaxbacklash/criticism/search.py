@@ -140,10 +140,11 @@ class Search(Unseen):
         Alone such a law may do the work of several without, the first of which then did less.
         """
         final = steps[-1].trial
-        came = next((i for i, s in enumerate(steps) if s.added and self.bench.laws[s.added].states), None)
         free = self.known.get((final.names, False))
-        if came is None or not final.tied or free is None or follows(final, free):
+        remembers = [any(self.bench.laws[n].states for n in s.trial.names) for s in steps]
+        if not remembers[-1] or not final.tied or free is None or follows(final, free):
             return steps
+        came = remembers.index(True)  # from there on one of its kin may have taken its place
         before = steps[came - 1]
         known = {n: self.known.get((before.trial.names | {n}, before.trial.tied)) for n in before.evidence}
         helpful = self.clear(before.trial, {n: t for n, t in known.items() if t is not None}, MUCH)
@@ -361,11 +362,10 @@ class Search(Unseen):
                 # It soaked up what free windows leave, and no trajectory follows it: what acts without a state goes first.
                 name = self.best(current, plain, least)
                 settled = self.settle(plain[name])
-            pruned, dropped = self.prune(settled, spare=name)
-            if pruned.names in kept:
-                break
             replaced = tuple(sorted(current.names - tried[name].names))
-            current = pruned
+            current, dropped = self.prune(settled, spare=name)
+            if current.names in kept:
+                break
             steps.append(Step(current, name, replaced + dropped, ()))
         return steps
 
