@@ -388,8 +388,9 @@ class Search(Unseen):
                 return held
         telling = [c for c in ranking if self.may_help(current, c)][:TRIED]
         tried: dict[str, Trial] = {}
-        # Friction's memory is looked for first where no static law promises to do, or there is friction that may have one.
-        looked = bool(telling) and (telling[0].predicted > ADEQUATE or self.rubs(current))
+        # Friction's memory is looked for first where no static law promises to do, there is friction that may have one, or where
+        # so little is left under the noise that any law seems to do.
+        looked = bool(telling) and (telling[0].predicted > ADEQUATE or self.rubs(current) or explained(current))
         if looked:
             tried = self.memories(current, ranking)
         # Of those that promise about as much the simplest goes first: a richer one then need not be fitted to the end.

@@ -264,7 +264,8 @@ class Tried:
             # A joint that was fitted without friction's memory is bent by it: the tuned one is nearer.
             joint = trial.system if member.kin else member.tuned.system
             fitted = self._keep(self.bench.fit(effects, trial, joint=joint, tied=tied, patience=patience, followed=True))
-            if tied and not adequate(fitted):
+            arrived = adequate(fitted) and (fitted.done or fitted.cost < trial.cost)
+            if tied and not arrived:
                 # Windows that are one trajectory can keep a law from where free ones find it.
                 free = self._keep(self.bench.fit(effects, trial, joint=joint, patience=patience, followed=True))
                 return self.settle(free)
