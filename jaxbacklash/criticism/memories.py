@@ -50,7 +50,7 @@ def members(
     if bench.quick.blind:
         return []
     kin = next((n for n in names if n in trial.names), None)
-    beside, system, free = _without(bench, trial, kin)
+    beside, system, free = without(bench, trial, kin)
     parted = [apart(e, strengths(e)) for n, e in bench.effects(trial).items() if n not in beside and n != kin]
     if kin is not None:
         present = tune(bench.quick, system, free, [trial.system.effects[kin]])
@@ -83,13 +83,13 @@ def may_replace(bench: Workbench, trial: Trial, name: str, others: Sequence[Abst
     """Whether the quick look leaves open that each of some static laws would do in the place of a fitted one of a family."""
     if bench.quick.blind:
         return [True] * len(others)
-    _, system, free = _without(bench, trial, name)
+    _, system, free = without(bench, trial, name)
     tuned = tune(bench.quick, system, free, [trial.system.effects[name]])
     return [lead(bench.quick, free, tuned, system, [apart(e, strengths(e))]) < demanded(bench) for e in others]
 
 
-def _without(bench: Workbench, trial: Trial, kin: str | None) -> tuple[dict[str, AbstractEffect], System, tuple[str, ...]]:
-    """The effects of a model that stay when a law takes the place of its kin or of dry friction; the model left; what is free."""
+def without(bench: Workbench, trial: Trial, kin: str | None) -> tuple[dict[str, AbstractEffect], System, tuple[str, ...]]:
+    """The effects of a model that stay when one named or dry friction gives way; the model left; what is free."""
     full = trial.system
     here = bench.effects(trial)
     beside = {n: e for n, e in here.items() if n != kin and (kin or not (e.slides and e.port == "joint"))}

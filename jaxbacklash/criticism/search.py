@@ -387,12 +387,11 @@ class Search(Unseen):
             if any(gain(current, t) > demanded(self.bench) for t in held.values()):
                 return held
         telling = [c for c in ranking if self.may_help(current, c)][:TRIED]
-        tried: dict[str, Trial] = {}
         # Friction's memory is looked for first where no static law promises to do, there is friction that may have one, or where
         # so little is left under the noise that any law seems to do.
         looked = bool(telling) and (telling[0].predicted > ADEQUATE or self.rubs(current) or explained(current))
-        if looked:
-            tried = self.memories(current, ranking)
+        tried = self.memories(current, ranking) if looked else {}
+        tried |= self.given(current)
         # Of those that promise about as much the simplest goes first: a richer one then need not be fitted to the end.
         level = sorted((c for c in telling if c.gain >= CLOSE * telling[0].gain), key=lambda c: c.parameters)
         for c in (*level, *telling[len(level) :]):

@@ -73,6 +73,20 @@ def lead(look: QuickLook, free: tuple[str, ...], tuned: Tuned, start: System, ri
     return best
 
 
+def told(look: QuickLook, free: tuple[str, ...], law: AbstractEffect, system: System, rival: AbstractEffect) -> float:
+    """What the weak form would say for a law against a rival if the law were the truth, 0 where it is blind.
+
+    The sum of squares of the law's torque that neither the rival's nor a model's own parameters take up, in units of the
+    variance of what the rival leaves.
+    """
+    left, by = look.missing(system, free)
+    others = np.column_stack([by, look.column(rival, system)])
+    white = whitener(left - others @ np.linalg.lstsq(others, left, rcond=None)[0])
+    basis = np.linalg.qr(white(others))[0]
+    left, own = (v - basis @ (basis.T @ v) for v in (white(left), white(look.column(law, system))))
+    return float(own @ own) * left.size / (float(left @ left) + 1e-300)
+
+
 def apart(effect: AbstractEffect, strengths: Iterable[str]) -> Rival:
     """A law that is linear in its strengths as a rival: one effect for each of them, at the size of a typical change."""
     names, described = list(strengths), specs(effect)
@@ -95,6 +109,12 @@ def stronger(effect: AbstractEffect, factor: float) -> AbstractEffect:
     """The law with all of its torques ``factor`` times as large: it gives over the same distance, at the same speeds."""
     torques = {n: v * factor for n, v in values(effect).items() if specs(effect)[n].unit.startswith(("N m", "kg m^2"))}
     return with_values(effect, torques)
+
+
+def level(law: AbstractEffect) -> float:
+    """The largest torque that a law states [N m]."""
+    found = values(law)
+    return max(abs(found[n]) for n, s in specs(law).items() if s.unit == "N m")
 
 
 def _open(effect: AbstractEffect) -> dict[str, Spec]:

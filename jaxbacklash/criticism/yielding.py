@@ -8,11 +8,10 @@ so that its windows stay free and leave noise. The law that gives is then tried 
 from __future__ import annotations
 
 from ..mechanics import AbstractEffect, canonical_name
-from ..parameters import specs, values
 from .evidence import demanded, explained, gain, shapeless
 from .memories import families
 from .tried import WHOLE, Tried
-from .tuning import stronger
+from .tuning import level, stronger
 from .workbench import Trial, adequate
 
 
@@ -37,20 +36,14 @@ def yielding(search: Tried, final: Trial) -> tuple[str, Trial] | None:
     return None
 
 
-def _level(law: AbstractEffect) -> float:
-    """The largest torque that a law states [N m]."""
-    found = values(law)
-    return max(abs(found[n]) for n, s in specs(law).items() if s.unit == "N m")
-
-
 def _joined(search: Tried, final: Trial, dry: str, name: str) -> Trial | None:
     """One trajectory with the law that gives, from the first of its guesses that leads to one."""
     bench = search.bench
     beside = {n: e for n, e in bench.effects(final).items() if n != dry}
-    level = _level(final.system.effects[dry])
+    size = level(final.system.effects[dry])
     for guess in bench.laws[name].guesses(final.system, bench.quick.motion):
         search.progress(f"trying {name} in place of {dry}", 0.65)
-        effects = {**beside, name: stronger(guess, level)}
+        effects = {**beside, name: stronger(guess, size)}
         free = bench.fit(effects, final, followed=True, patience=WHOLE)
         if not adequate(free):
             continue
@@ -63,5 +56,5 @@ def _joined(search: Tried, final: Trial, dry: str, name: str) -> Trial | None:
 def _sharp(search: Tried, soft: Trial, name: str, law: AbstractEffect) -> Trial:
     """Dry friction of the same level, as one trajectory from that of the law that gives."""
     effects = search.bench.effects(soft)
-    effects[canonical_name(law)] = stronger(law, _level(effects.pop(name)) / max(_level(law), 1e-300))
+    effects[canonical_name(law)] = stronger(law, level(effects.pop(name)) / max(level(law), 1e-300))
     return search.softly(search.bench.fit(effects, soft, tied=True, patience=WHOLE))
