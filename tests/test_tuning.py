@@ -7,7 +7,7 @@ pytest.importorskip("numba")
 
 from jaxbacklash.criticism.evidence import AS_WELL
 from jaxbacklash.criticism.quick_look import QuickLook
-from jaxbacklash.criticism.tuning import apart, lead, tune
+from jaxbacklash.criticism.tuning import Tuned, apart, lead, told, tune
 from jaxbacklash.criticism.workbench import strengths
 from jaxbacklash.effects import BoucWen, CoulombGround, CoulombJoint, Dahl, Gravity, Lugre, Stribeck
 from jaxbacklash.fitting.setup import base_system
@@ -70,6 +70,30 @@ def test_no_memory_is_seen_where_there_is_none(name):
     static = {"coulomb_joint": {"coulomb_joint": {"Tc": 3.0}}, "gravity": {"gravity": {"G": -30.0}}, "nothing": {}}
     _, ahead, alone = leads(static[name])
     assert ahead[Dahl] < max(DEMANDED, (1.0 - AS_WELL) * alone)
+
+
+@pytest.mark.parametrize("sigma", [6e-4, 1e-3])
+def test_what_the_weak_form_would_say_of_a_law_is_about_what_it_says_of_the_truth(sigma):
+    """Told from dry friction alone, and the fall measured with the true law, over ten records' noise. It is told low, as what dry
+    friction leaves holds the law's torque too."""
+    level, slope = HIDDEN["dahl"]["Fc"], HIDDEN["dahl"]["sigma"]
+    law, dry = Dahl(level, slope), CoulombJoint(level)
+    expected, measured = [], []
+    for seed in range(10):
+        seen = record({"dahl": HIDDEN["dahl"]}, seed=seed, sigma=sigma)
+        base, free, _ = base_system(seen, "joint", RIG.inertia)
+        look = QuickLook(seen)
+        expected.append(told(look, free, law, base, dry))
+        tuned = Tuned(law, base, residual(look, free, base, law), 1)
+        measured.append(lead(look, free, tuned, base, [([dry], 1)]))
+    assert np.mean(expected) < np.mean(measured) < 2.5 * np.mean(expected)
+    assert told(look, free, law, base, law) == pytest.approx(0.0, abs=1e-6)
+
+
+def residual(look, free, base, law):
+    left, by = look.missing(base, free)
+    design = np.column_stack([by, look.column(law, base)])
+    return left - design @ np.linalg.lstsq(design, left, rcond=None)[0]
 
 
 def test_lugre_can_find_its_way_back_from_a_static_level_below_the_sliding_one():

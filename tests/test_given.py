@@ -1,0 +1,76 @@
+"""Friction that gives tried beside dry friction that a record's quick look cannot tell from it, on models that are only numbers."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from jaxbacklash.criticism import unseen as module
+from jaxbacklash.criticism.unseen import Unseen
+from jaxbacklash.effects import Contact, CoulombGround, CoulombJoint, Damper, Dahl, Gravity
+from jaxbacklash.system import System
+
+from .number_models import Model
+
+JOINT = System(3.0, Contact(0.02, 1e4), Damper(10.0), {}, "z")
+
+
+def model(cost, *, tied=True, misfit=1.0, **effects):
+    return Model(frozenset(effects), cost, tied, misfit=misfit, effects=effects, system=JOINT.with_effects(*effects.values()))
+
+
+class Bench:
+    """Answers each fit from a list, and notes with what it began."""
+
+    def __init__(self, *answers):
+        self.answers, self.begun = list(answers), []
+        self.laws = {"coulomb_joint": CoulombJoint, "coulomb_ground": CoulombGround, "gravity": Gravity, "dahl": Dahl}
+        self.quick, self.record = SimpleNamespace(motion=None, blind=False), SimpleNamespace(samples=5000)
+
+    def effects(self, trial):
+        return dict(trial.effects)
+
+    def fit(self, effects, start, **how):
+        assert how["tied"]
+        self.begun.append(effects)
+        return model(self.answers.pop(0), **effects)
+
+
+def given(monkeypatch, trial, hears, *answers):
+    monkeypatch.setattr(module, "told", lambda *_: hears)
+    bench = Bench(*answers)
+    search = Unseen(bench)
+    return search.given(trial), bench, search
+
+
+def test_the_better_of_two_guesses_stands_beside_what_stays(monkeypatch):
+    trial = model(100.0, coulomb_joint=CoulombJoint(3.0), gravity=Gravity(-30.0))
+    found, bench, search = given(monkeypatch, trial, 5.0, 90.0, 70.0)
+    assert list(found) == ["dahl"]
+    assert found["dahl"].cost == 70.0
+    assert [sorted(effects) for effects in bench.begun] == [["dahl", "gravity"]] * 2
+    levels = [float(effects["dahl"].Fc) for effects in bench.begun]
+    gives = [float(effects["dahl"].Fc / effects["dahl"].sigma) for effects in bench.begun]
+    assert levels == pytest.approx([3.0, 3.0])
+    assert gives == pytest.approx(np.array([0.08, 0.02]) * 0.02)
+    assert search.given(trial) == found  # and none is fitted twice
+    assert len(bench.begun) == 2
+
+
+def test_what_the_quick_look_tells_apart_costs_no_fit(monkeypatch):
+    found, bench, _ = given(monkeypatch, model(100.0, coulomb_joint=CoulombJoint(3.0)), 500.0)
+    assert not found
+    assert not bench.begun
+
+
+@pytest.mark.parametrize(
+    "trial",
+    [
+        model(100.0, gravity=Gravity(-30.0)),
+        model(100.0, coulomb_ground=CoulombGround(3.0)),
+        model(100.0, coulomb_joint=CoulombJoint(3.0), tied=False),
+        model(1e5, coulomb_joint=CoulombJoint(3.0), misfit=9.0),
+    ],
+)
+def test_only_friction_in_the_joint_that_one_trajectory_follows_is_asked(monkeypatch, trial):
+    assert not given(monkeypatch, trial, 0.0)[0]
