@@ -1,4 +1,4 @@
-"""Friction that gives tried beside dry friction that a record's quick look cannot tell from it, on models that are only numbers."""
+"""Friction that gives, tried beside dry friction where the quick look tells them apart too badly, on models of numbers."""
 
 from types import SimpleNamespace
 
@@ -7,7 +7,7 @@ import pytest
 
 from jaxbacklash.criticism import unseen as module
 from jaxbacklash.criticism.unseen import Unseen
-from jaxbacklash.effects import Contact, CoulombGround, CoulombJoint, Damper, Dahl, Gravity
+from jaxbacklash.effects import Contact, CoulombGround, CoulombJoint, Dahl, Damper, Gravity
 from jaxbacklash.system import System
 
 from .number_models import Model
