@@ -63,6 +63,12 @@ def test_what_the_quick_look_tells_apart_costs_no_fit(monkeypatch):
     assert not bench.begun
 
 
+def test_a_law_that_states_no_torque_is_not_compared(monkeypatch):
+    found, bench, _ = given(monkeypatch, model(100.0, coulomb_joint=CoulombJoint(0.0)), 0.0)
+    assert not found
+    assert not bench.begun
+
+
 @pytest.mark.parametrize(
     "trial",
     [

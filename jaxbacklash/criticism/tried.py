@@ -207,6 +207,10 @@ class Tried:
         """Whether a model has dry friction, whose corners a search may stick at."""
         return any(self.bench.laws[name].slides for name in trial.names)
 
+    def dry_in_joint(self, trial: Trial) -> str | None:
+        """Name of a model's dry friction in the joint, None without."""
+        return next((n for n in sorted(trial.names) if self.bench.laws[n].slides and self.bench.laws[n].port == "joint"), None)
+
     def rubs(self, trial: Trial) -> bool:
         """Whether a model has friction in the joint: what a record asks for beside it may be that friction's memory."""
         effects = self.bench.effects(trial).values()

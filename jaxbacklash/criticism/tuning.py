@@ -112,9 +112,9 @@ def stronger(effect: AbstractEffect, factor: float) -> AbstractEffect:
 
 
 def level(law: AbstractEffect) -> float:
-    """The largest torque that a law states [N m]."""
+    """The largest torque that a law states [N m], 0 for a law that states none."""
     found = values(law)
-    return max(abs(found[n]) for n, s in specs(law).items() if s.unit == "N m")
+    return max((abs(found[n]) for n, s in specs(law).items() if s.unit == "N m"), default=0.0)
 
 
 def _open(effect: AbstractEffect) -> dict[str, Spec]:

@@ -46,14 +46,15 @@ class Unseen(Tried):
     def given(self, trial: Trial) -> dict[str, Trial]:
         """The model with friction that gives in place of its dry friction in the joint, by name, where noise hides from the quick
         look which of them it is: one trajectory tells them apart long before."""
-        dry = next((n for n in sorted(trial.names) if self.bench.laws[n].slides and self.bench.laws[n].port == "joint"), None)
-        if dry is None or not trial.tied or not adequate(trial) or self.bench.quick.blind:
+        dry = self.dry_in_joint(trial)
+        size = 0.0 if dry is None else level(trial.system.effects[dry])
+        if dry is None or not size > 0.0 or not trial.tied or not adequate(trial) or self.bench.quick.blind:
             return {}
         found: dict[str, Trial] = {}
         beside, system, free = without(self.bench, trial, dry)
         friction = trial.system.effects[dry]
         for name in (names[0] for names in families(self.bench).values()):
-            laws = [stronger(law, level(friction)) for law in self.bench.laws[name].guesses(system, self.bench.quick.motion)]
+            laws = [stronger(law, size) for law in self.bench.laws[name].guesses(system, self.bench.quick.motion)]
             least = demanded(self.bench) + np.log(self.bench.record.samples)
             if told(self.bench.quick, free, laws[0], system, friction) > GLIMPSED * least:
                 continue

@@ -22,7 +22,7 @@ def yielding(search: Tried, final: Trial) -> tuple[str, Trial] | None:
     then it only leads dry friction round its corners, and if that is one trajectory from there, it is what is returned.
     """
     bench = search.bench
-    dry = next((n for n in sorted(final.names) if bench.laws[n].slides and bench.laws[n].port == "joint"), None)
+    dry = search.dry_in_joint(final)
     if final.tied or dry is None or not adequate(final) or bench.outright:
         return None
     for names in families(bench).values():
