@@ -28,9 +28,7 @@ class ArrowSolution(eqx.Module):
     pull: Array
 
 
-def solve(
-    blocks: Blocks, damping: Array, used: Array | int | None = None, damping_theta: Array | None = None
-) -> ArrowSolution:
+def solve(blocks: Blocks, damping: Array, used: Array | int | None = None) -> ArrowSolution:
     r"""Solve :math:`(H + \lambda D)\,\Delta = -g` by elimination of the windows in order.
 
     D is the diagonal of H as far as it comes from samples: damping measured by the ties as well would hinder windows from
@@ -39,14 +37,13 @@ def solve(
     Parameters
     ----------
     blocks : normal equations by blocks (`Blocks`)
-    damping : Levenberg-Marquardt :math:`\lambda \ge 0`, one for all windows or one each (W,)
+    damping : Levenberg-Marquardt :math:`\lambda \ge 0`
     used : windows that hold data, the first ones; default all
-    damping_theta : that of the parameters; default that of all windows
     """
     size = blocks.slope.shape[1]
     q = blocks.corner.shape[0]
     eye = jnp.eye(size)
-    diagonal = blocks.diagonal + (jnp.reshape(damping, (-1, 1)) * blocks.seen)[:, :, None] * eye
+    diagonal = blocks.diagonal + (damping * blocks.seen)[:, :, None] * eye
     border = jnp.concatenate([blocks.border, blocks.slope[:, :, None]], axis=2)
 
     def eliminate(carry: Any, block: Any) -> Any:
@@ -68,7 +65,7 @@ def solve(
     schur = blocks.corner - inner[:q, :q]
     right = -(blocks.slope_theta - inner[:q, q])
     if q:
-        damped = schur + (damping if damping_theta is None else damping_theta) * jnp.diag(blocks.seen_theta)
+        damped = schur + damping * jnp.diag(blocks.seen_theta)
         theta = _solve_scaled(damped, right)
     else:
         theta = jnp.zeros(0)
