@@ -24,6 +24,7 @@ from .evidence import (
     significance,
     worth,
 )
+from .loose import by_free_windows
 from .memories import Member, families, may_replace, members
 from .steps import Step, leading
 from .tried import LOOSER, WHOLE, follows
@@ -86,7 +87,7 @@ class Search(Unseen):
             steps = self.with_hidden(steps)
             if not explained(steps[-1].trial):
                 steps = self.forward(steps[-1].trial, steps, LITTLE)
-        steps = self.with_static(steps)
+        steps = by_free_windows(self, self.with_static(steps), MUCH)
         steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(self.with_yielding(self.with_unseen(steps))))))
         return steps
 
@@ -390,7 +391,7 @@ class Search(Unseen):
         # Friction's memory is looked for first where no static law promises to do, there is friction that may have one, or where
         # so little is left under the noise that any law seems to do.
         looked = bool(telling) and (telling[0].predicted > ADEQUATE or self.rubs(current) or explained(current))
-        tried = self.memories(current, ranking) if looked else {}
+        tried = self.memories(current, ranking) if looked and not self.apart else {}
         tried |= self.given(current)
         # Of those that promise about as much the simplest goes first: a richer one then need not be fitted to the end.
         level = sorted((c for c in telling if c.gain >= CLOSE * telling[0].gain), key=lambda c: c.parameters)
@@ -403,7 +404,7 @@ class Search(Unseen):
             self.progress(f"trying {c.name}", 0.4)
             rival = min(tried.values(), key=lambda t: t.criterion) if enough else None
             tried[c.name] = self.add(current, c, rival)
-            if not looked and not explained(tried[c.name]):
+            if not looked and not explained(tried[c.name]) and not self.apart:
                 tried, looked = tried | self.memories(current, ranking), True
         if not explained(current):
             # Beside a law that sticks its richer relative is judged badly from outside: it is always tried.

@@ -41,9 +41,12 @@ class Tried:
         self.known: dict[tuple[frozenset[str], bool], Trial] = {}
         self.asked: set[frozenset[str]] = set()  # models that were to be tied with cuts
         self.shook: set[frozenset[str]] = set()  # models whose dry friction was softened for a while
+        self.apart = False  # windows are left free, and laws with states out of it
 
     def settle(self, trial: Trial) -> Trial:
         """The trial finished, and its windows tied where it is good enough for that."""
+        if self.apart:
+            return trial if trial.done else self.finish(trial)
         if not trial.tied and not trial.done and not adequate(trial):
             trial = self.finish(trial)  # what is still on its way may come to be good enough
         if not trial.tied and adequate(trial):
@@ -54,8 +57,8 @@ class Tried:
                 return through
             if adequate(tied) and not tied.done and not self.dry(tied):
                 tied = self.finish(tied)
-            # A tied search that has stuck tells nothing about the model.
-            if adequate(tied) and tied.done:
+            # A tied search that has stuck at corners tells nothing about the model.
+            if adequate(tied) and (tied.done or not self.dry(tied)):
                 return self._keep(tied)
         return trial if trial.done else self.finish(trial)
 

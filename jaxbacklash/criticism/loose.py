@@ -1,0 +1,61 @@
+"""Another path to a model, on free windows, where one trajectory does not follow what free windows leave.
+
+Dry friction and the wrong law beside it can hold one trajectory where no step leads to the right one, and each addition is
+then judged from there. Free windows tell less of small effects, but nothing holds them: what they name is tied at the end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from .candidates import rank
+from .evidence import demanded, explained, gain
+from .steps import Step
+from .tried import follows
+from .workbench import Trial
+
+if TYPE_CHECKING:
+    from .search import Search
+
+TIED, LIKELY = 3, 3
+"""Models that are tied at most, and candidates that are looked at in the place of an effect."""
+
+
+def by_free_windows(search: Search, steps: list[Step], least: float) -> list[Step]:
+    """The path on free windows by effects without a state of their own, if one trajectory follows it to a better model.
+
+    Parameters
+    ----------
+    search : the record's search
+    steps : a path whose last model is one trajectory
+    least : share of the misfit above noise that an addition must take away, as in `Search.forward`
+    """
+    final = steps[-1].trial
+    if not final.tied or not final.names or search.bench.outright or follows(final, search.loosened(final)):
+        return steps
+    base = search.loosened(steps[0].trial)
+    search.apart = True
+    try:
+        path = search.forward(base, [Step(base, None, (), ())], least)
+        found = sorted(_around(search, path[-1].trial), key=lambda t: t.criterion)
+    finally:
+        search.apart = False
+    for free in [t for t in found if gain(found[0], t) > -2.0 * demanded(search.bench)][:TIED]:
+        tied = search.settle(free)
+        if tied.tied and explained(tied) and gain(final, tied) > demanded(search.bench):
+            settled, dropped = search.prune(tied)
+            added = next(iter(sorted(settled.names - steps[0].trial.names)), None)
+            return search.forward(settled, [steps[0], Step(settled, added, dropped, ())], least)
+    return steps
+
+
+def _around(search: Search, trial: Trial) -> Iterator[Trial]:
+    """A model of free windows, and those with another effect in the place of one of its own."""
+    yield trial
+    for name in sorted(trial.names):
+        rest = search.without(trial, name)
+        others = [c for c in rank(search.bench, rest) if c.name not in trial.names]
+        for candidate in others[:LIKELY]:
+            search.progress(f"trying {candidate.name} in place of {name}", 0.65)
+            yield search.add(rest, candidate)
