@@ -153,6 +153,9 @@ class Tried:
             free = self._keep(self.bench.fit(self.bench.effects(tied), tied, patience=WHOLE))
             again = self.bench.fit(self.bench.effects(free), free, tied=True, patience=WHOLE)
             if not tied.cost - again.cost > LOOSER:
+                # States that free windows chose for themselves may lead one trajectory astray where their law is right.
+                again = self.bench.fit(self.bench.effects(free), tied, joint=free.system, tied=True, followed=True, patience=WHOLE)
+            if not tied.cost - again.cost > LOOSER:
                 break
             tied = again
         return min(tied, again, key=lambda t: t.cost)
