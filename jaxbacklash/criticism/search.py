@@ -406,7 +406,7 @@ class Search(Unseen):
             tried[c.name] = self.add(current, c, rival)
             if not looked and not explained(tried[c.name]) and not self.apart:
                 tried, looked = tried | self.memories(current, ranking), True
-        if not explained(current):
+        if current.tied or not explained(current):
             # Beside a law that sticks its richer relative is judged badly from outside: it is always tried.
             kin = [c for c in ranking if c.name not in tried and not current.names.isdisjoint(self.bench.laws[c.name].absorbs)]
             tried |= {c.name: self.add(current, c) for c in kin}
