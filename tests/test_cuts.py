@@ -54,7 +54,7 @@ def test_only_dry_friction_is_a_reason_to_cut(monkeypatch):
     names = frozenset({"preload"})
     free = Model(names, cost=90.0, tied=False)
     stuck = Model(names, cost=150.0, done=False, misfit=1.2)
-    assert tried.Tried(Rubbing(stuck, stuck)).settle(free) is free
+    assert tried.Tried(Rubbing(stuck, stuck)).settle(free) is stuck
 
 
 def test_a_cut_is_paid_for():

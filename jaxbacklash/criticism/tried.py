@@ -151,10 +151,12 @@ class Tried:
         """A tied model or, where that is better, the same by way of free windows: one long trajectory has many minima."""
         for _ in range(ROUNDS):
             free = self._keep(self.bench.fit(self.bench.effects(tied), tied, patience=WHOLE))
-            again = self.bench.fit(self.bench.effects(free), free, tied=True, patience=WHOLE)
+            effects = self.bench.effects(free)
+            again = self.bench.fit(effects, free, tied=True, patience=WHOLE)
             if not tied.cost - again.cost > LOOSER:
                 # States that free windows chose for themselves may lead one trajectory astray where their law is right.
-                again = self.bench.fit(self.bench.effects(free), tied, joint=free.system, tied=True, followed=True, patience=WHOLE)
+                anew = self.bench.fit(effects, tied, joint=free.system, tied=True, followed=True, patience=WHOLE)
+                again = min(again, anew, key=lambda t: t.cost)
             if not tied.cost - again.cost > LOOSER:
                 break
             tied = again

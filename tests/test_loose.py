@@ -1,0 +1,123 @@
+"""Another path on free windows, where one trajectory does not follow what free windows leave."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from jaxbacklash.criticism import loose
+from jaxbacklash.criticism.refine import refine
+from jaxbacklash.criticism.search import Search, Step
+from jaxbacklash.records import Record
+
+from .number_models import Model
+from .test_search_steps import Bench
+
+BASE = Model(frozenset(), cost=500.0, misfit=1.1)
+WRONG = Model(frozenset({"preload"}), cost=200.0, misfit=1.05)
+RIGHT = Model(frozenset({"gravity"}), cost=90.0, tied=False, misfit=0.99)
+STEPS = [Step(BASE, None, (), ()), Step(WRONG, "preload", (), ())]
+
+
+def searching(monkeypatch, tied, *, free=0.99):
+    """A search whose free windows name gravity, which ``tied`` is one trajectory of; ``free`` the misfit of the wrong model's."""
+    search, seen = Search(Bench()), []
+    apart = Model(BASE.names, cost=400.0, tied=False), Model(WRONG.names, cost=150.0, tied=False, misfit=free)
+    loosened = {trial.names: trial for trial in apart}
+
+    def forward(start, steps, least):
+        seen.append((search.apart, start))
+        return [*steps, Step(RIGHT, "gravity", (), ())] if search.apart else steps
+
+    monkeypatch.setattr(search, "loosened", lambda trial: loosened[trial.names])
+    monkeypatch.setattr(search, "forward", forward)
+    monkeypatch.setattr(search, "settle", lambda trial: tied)
+    monkeypatch.setattr(search, "prune", lambda trial: (trial, ()))
+    monkeypatch.setattr(loose, "_around", lambda search, trial: iter([trial]))
+    return search, seen
+
+
+def test_what_free_windows_name_is_kept_as_one_trajectory(monkeypatch):
+    tied = Model(RIGHT.names, cost=100.0, misfit=1.0)
+    search, seen = searching(monkeypatch, tied)
+    path = loose.by_free_windows(search, STEPS, 0.25)
+    assert [s.trial.names for s in path] == [BASE.names, RIGHT.names]
+    assert path[-1].trial is tied
+    assert seen[0] == (True, search.loosened(BASE))
+    assert seen[1] == (False, tied)  # and what else is missing is looked for from there
+
+
+@pytest.mark.parametrize(
+    ("cost", "how"),
+    [(199.5, {"misfit": 1.0}), (100.0, {"misfit": 1.05}), (100.0, {"tied": False})],
+    ids=["no better", "leaves a rest", "no trajectory"],
+)
+def test_a_path_that_leads_to_no_better_trajectory_is_left(monkeypatch, cost, how):
+    search, _ = searching(monkeypatch, Model(RIGHT.names, cost=cost, **how))
+    assert loose.by_free_windows(search, STEPS, 0.25) is STEPS
+    assert not search.apart
+
+
+def test_a_trajectory_that_follows_its_free_windows_is_not_doubted(monkeypatch):
+    search, seen = searching(monkeypatch, None, free=1.045)
+    assert loose.by_free_windows(search, STEPS, 0.25) is STEPS
+    assert not seen
+
+
+def test_apart_windows_stay_free(monkeypatch):
+    search = Search(Bench())
+    search.apart = True
+    assert search.settle(RIGHT) is RIGHT
+    search.apart = False
+    search.bench.answers = [Model(RIGHT.names, cost=95.0)]
+    assert search.settle(RIGHT).tied
+
+
+def test_the_flag_goes_with_an_error(monkeypatch):
+    search, _ = searching(monkeypatch, None)
+
+    def fails(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(search, "forward", fails)
+    with pytest.raises(KeyboardInterrupt):
+        loose.by_free_windows(search, STEPS, 0.25)
+    assert not search.apart
+
+
+def test_every_effect_has_a_chance_to_be_another(monkeypatch):
+    """Of a model, and of what stands in the place of each of its effects, the first few."""
+    search = Search(Bench())
+    both, rest = Model(frozenset({"gravity", "preload"}), 100.0, tied=False), Model(frozenset({"preload"}), 150.0, tied=False)
+    added = []
+    monkeypatch.setattr(search, "without", lambda trial, name: rest)
+    monkeypatch.setattr(search, "add", lambda before, c: added.append(c.name) or SimpleNamespace(names=before.names | {c.name}))
+    ranked = [SimpleNamespace(name=n) for n in ("preload", "gap_spring", "gravity", "drag", "ripple", "last")]
+    monkeypatch.setattr(loose, "rank", lambda bench, trial: ranked)
+    found = list(loose._around(search, both))
+    assert found[0] is both
+    assert added == ["gap_spring", "drag", "ripple"] * 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("number", "hidden", "kind"),
+    [
+        (7116, ("gap_spring", "coulomb_ground", "asymmetric_gap"), "chirp"),
+        (7173, ("flexible_link", "gravity"), "multisine"),
+    ],
+)
+def test_pairs_and_triples_are_found_at_thirty_times_the_noise(number, hidden, kind):
+    """Friction at the ground that dahl imitates beside a spring in the gap; a flexible link whose free windows know its numbers
+    and not its states."""
+    pytest.importorskip("numba", reason="the independent simulation needs numba")
+    from .independent.generator import make_effects, make_excitation, make_rig, measure, simulate_truth
+
+    rng, sigma = np.random.default_rng(number), 9e-4
+    rig, values = make_rig(rng), make_effects(rng, *hidden)
+    truth = simulate_truth(rig, values, make_excitation(rng, kind, 20.0), 500.0, 20.0)
+    seen = measure(truth, rng, sigma, sigma, 3.0 * sigma if (number - 7000) % 3 == 2 else None)
+    found = refine(Record(seen["t"], {"x": seen["x"], "z": seen["z"]}), inertia=rig.inertia)
+    assert set(found.effects) == set(hidden)
+    assert found.verdict.complete
+    assert found.fit.score.median < 1.05
