@@ -2,13 +2,10 @@
 
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 from jaxbacklash.criticism import loose
-from jaxbacklash.criticism.refine import refine
 from jaxbacklash.criticism.search import Search, Step
-from jaxbacklash.records import Record
 
 from .number_models import Model
 from .test_search_steps import Bench
@@ -97,27 +94,3 @@ def test_every_effect_has_a_chance_to_be_another(monkeypatch):
     found = list(loose._around(search, both))
     assert found[0] is both
     assert added == ["gap_spring", "drag", "ripple"] * 2
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("number", "hidden", "kind"),
-    [
-        (7116, ("gap_spring", "coulomb_ground", "asymmetric_gap"), "chirp"),
-        (7173, ("flexible_link", "gravity"), "multisine"),
-    ],
-)
-def test_pairs_and_triples_are_found_at_thirty_times_the_noise(number, hidden, kind):
-    """Friction at the ground that dahl imitates beside a spring in the gap; a flexible link whose free windows know its numbers
-    and not its states."""
-    pytest.importorskip("numba", reason="the independent simulation needs numba")
-    from .independent.generator import make_effects, make_excitation, make_rig, measure, simulate_truth
-
-    rng, sigma = np.random.default_rng(number), 9e-4
-    rig, values = make_rig(rng), make_effects(rng, *hidden)
-    truth = simulate_truth(rig, values, make_excitation(rng, kind, 20.0), 500.0, 20.0)
-    seen = measure(truth, rng, sigma, sigma, 3.0 * sigma if (number - 7000) % 3 == 2 else None)
-    found = refine(Record(seen["t"], {"x": seen["x"], "z": seen["z"]}), inertia=rig.inertia)
-    assert set(found.effects) == set(hidden)
-    assert found.verdict.complete
-    assert found.fit.score.median < 1.05

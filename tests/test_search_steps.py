@@ -33,6 +33,9 @@ class Bench:
     def fit_softly(self, trial, *_):
         return trial
 
+    def rests(self, port):
+        return True
+
 
 @pytest.mark.parametrize("costs", [(130.0, 90.0), (90.0,), (130.0, 140.0)])
 def test_a_larger_model_that_fits_worse_begins_again_near_the_smaller_one(monkeypatch, costs):
@@ -228,6 +231,22 @@ def test_a_law_is_reduced_to_the_simpler_one_that_does_as_well(monkeypatch):
     assert len(search.reduced([Step(rich, "stribeck", (), ())])) == 1
 
 
+@pytest.mark.parametrize(("ahead", "rests", "kept"), [(4.0, False, False), (60.0, False, True), (60.0, True, False)])
+def test_a_law_of_undetermined_shape_stays_where_it_clearly_acts(monkeypatch, ahead, rests, kept):
+    """But where the link rests for long, what it adds there says nothing."""
+    significant(monkeypatch, 100.0)
+    rich = Model(frozenset({"stribeck"}), cost=100.0, free=("backlash", "Tc", "Ts", "vs"))
+    plain = Model(frozenset({"coulomb_joint"}), cost=100.0 + 10.0 + 0.5 * ahead, free=("backlash", "Tc"))
+    search = Search(Bench())
+    search.bench.laws = laws(stribeck=("coulomb_joint",), coulomb_joint=())
+    search.bench.rests = lambda port: rests
+    monkeypatch.setattr("jaxbacklash.criticism.search.shapeless", lambda trial, name, slowest: True)
+    monkeypatch.setattr(search, "simplified", lambda final, name, other: plain)
+    monkeypatch.setattr(search, "settle", lambda trial: trial)
+    path = search.reduced([Step(rich, "stribeck", (), ())])
+    assert (path[-1].trial is rich) == kept
+
+
 def test_what_fell_behind_on_free_windows_is_not_tied(monkeypatch):
     monkeypatch.setattr("jaxbacklash.criticism.search.gain", lambda before, after: before.criterion - after.criterion)
     search = Search(Bench())
@@ -260,7 +279,7 @@ def test_a_law_with_states_waits_until_it_explains_or_nothing_else_helps(monkeyp
 
 def laws(**absorbs):
     torque = lambda self: 0.0  # noqa: E731
-    return {n: SimpleNamespace(states=(), absorbs=a, slides=True, torque=torque) for n, a in absorbs.items()}
+    return {n: SimpleNamespace(states=(), absorbs=a, slides=True, torque=torque, port="joint") for n, a in absorbs.items()}
 
 
 @pytest.mark.parametrize("ahead", [5.0, 50.0])

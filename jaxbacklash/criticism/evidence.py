@@ -13,6 +13,8 @@ NOISE_FLOOR = 1.03
 """Root of the reduced chi-square up to which what is left counts as noise, since the noise itself is estimated."""
 AS_WELL = 0.98
 """Share of the best candidate's gain that counts as doing as well: then the simpler law is taken."""
+SURE = 4.0
+"""A gain of so many times what is demanded is no accident: a fit that does not show it has stuck, an effect that has it acts."""
 UNEXPLAINED = 0.02
 """Reduced chi-square above 1 that is too much for an error of the estimated noise."""
 
@@ -63,6 +65,14 @@ def shapeless(trial: Trial, name: str, slowest: float = 0.0) -> bool:
         (s.unit == "rad/s" and found[n] < slowest) or errors[trial.free.index(f"{name}.{n}")] > MOST_UNCERTAIN * abs(found[n])
         for n, s in _shapes(trial, name).items()
     )
+
+
+def acts_anyway(bench: Workbench, simpler: Trial, richer: Trial, name: str) -> bool:
+    """Whether a law whose shape is not determined explains so much more than one it contains that it is no accident.
+
+    Where the link rests for long no such lead says anything, see `shapeless`.
+    """
+    return gain(simpler, richer) > SURE * demanded(bench) and not bench.rests(bench.laws[name].port)
 
 
 def at_a_bound(trial: Trial, name: str) -> bool:

@@ -12,7 +12,9 @@ from .candidates import Candidate, rank
 from .evidence import (
     AS_WELL,
     NOISE_FLOOR,
+    SURE,
     UNEXPLAINED,
+    acts_anyway,
     at_a_bound,
     demanded,
     excess,
@@ -42,8 +44,6 @@ CLEAR = 8.0
 LITTLE, MUCH, MOST = 0.1, 0.25, 0.5
 """Share of the excess that an addition must take away where a rest stays unexplained: at least; as long as laws with
 internal states have not been tried; and if it is an effect of the measuring chain."""
-SURE = 4.0
-"""A gain predicted to be so many times what is demanded is no accident, so a fit that does not show it has stuck."""
 
 
 class Search(Unseen):
@@ -284,6 +284,7 @@ class Search(Unseen):
                     simpler = self.shaken(simpler)
                 # What leaves noise is not given up for what does not: the simpler one's search has stuck.
                 blind = shapeless(final, name, self.bench.slowest) and (explained(simpler) or not explained(final))
+                blind = blind and not acts_anyway(self.bench, simpler, richer, name)
                 if gain(simpler, richer) < demanded(self.bench) or blind:
                     settled, dropped = self.prune(self.settle(simpler))
                     return self.reduced([*steps, Step(settled, other, (name, *dropped), ())])

@@ -38,6 +38,10 @@ ENOUGH = 3e-3
 """A model that is clearly wrong is not fitted on when a step promises less than this share of its misfit."""
 
 
+RESTING = 0.015
+"""A link rests for long that does so in a larger share of its windows."""
+
+
 @dataclass(frozen=True)
 class Trial:
     """A fitted model: ``effects`` as fitted, by name; ``parameters`` free ones by name; ``cost`` half the sum of squares.
@@ -109,6 +113,13 @@ class Workbench:
         if self.quick.blind:
             return 0.0
         return noise_of_speed(self.record.t, self.record.channels[self.record.observed_name], self.layout.noise[0])
+
+    def rests(self, port: str) -> bool:
+        """Whether the link rests for long at a port, ``joint`` or ``ground``, as far as the record tells motion from rest."""
+        m, samples = self.quick.motion, self.windows.samples
+        speed = m.dy - m.dx if port == "joint" else m.dy
+        rows = speed[: speed.size // samples * samples].reshape(-1, samples)
+        return bool(np.mean(np.sqrt(np.mean(rows**2, axis=1)) < self.slowest) > RESTING)
 
     def problem(
         self, effects: dict[str, AbstractEffect], joint: System, *, extra: Iterable[str] = (),

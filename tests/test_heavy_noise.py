@@ -1,0 +1,53 @@
+"""Effects at thirty times the usual noise, where each search has to find a way of its own; and what rests in such records."""
+
+import numpy as np
+import pytest
+
+from jaxbacklash.criticism.refine import refine
+from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.fitting.setup import base_system
+from jaxbacklash.records import Record
+
+SIGMA = 9e-4  # rad
+
+
+def made(number, hidden, kind):
+    """A record of 20 s and its rig; every third has an encoder with counts of three noises."""
+    pytest.importorskip("numba", reason="the independent simulation needs numba")
+    from .independent.generator import make_effects, make_excitation, make_rig, measure, simulate_truth
+
+    rng = np.random.default_rng(number)
+    rig, values = make_rig(rng), make_effects(rng, *hidden)
+    truth = simulate_truth(rig, values, make_excitation(rng, kind, 20.0), 500.0, 20.0)
+    seen = measure(truth, rng, SIGMA, SIGMA, 3.0 * SIGMA if (number - 7000) % 3 == 2 else None)
+    return Record(seen["t"], {"x": seen["x"], "z": seen["z"]}), rig
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("number", "hidden", "kind"),
+    [
+        # Friction at the ground that dahl imitates beside a spring in the gap.
+        (7116, ("gap_spring", "coulomb_ground", "asymmetric_gap"), "chirp"),
+        # A link whose free windows know its numbers and not its states.
+        (7173, ("flexible_link", "gravity"), "multisine"),
+        # Friction at rest whose level and speed the record does not tell apart, but from one level it does.
+        (7070, ("stribeck",), "stepped"),
+    ],
+)
+def test_what_heavy_noise_hides_is_named(number, hidden, kind):
+    record, rig = made(number, hidden, kind)
+    found = refine(record, inertia=rig.inertia)
+    assert set(found.effects) == set(hidden)
+    assert found.verdict.complete
+    assert found.fit.score.median < 1.05
+
+
+@pytest.mark.parametrize(("number", "kind", "long"), [(60008, "chirp", True), (60007, "modulated", False)])
+def test_a_slow_chirp_lets_the_link_rest(number, kind, long):
+    """It begins below the friction; motion that turns at once rests no longer than that takes."""
+    record, rig = made(number, ("coulomb_joint",), kind)
+    base, free, _ = base_system(record, "joint", rig.inertia)
+    bench = Workbench(record, base, free, 0.2)
+    assert bench.rests("joint") == long
+    assert not bench.rests("ground")  # the base moves
