@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from jaxbacklash.criticism import unseen as module
+from jaxbacklash.criticism.search import Search
 from jaxbacklash.criticism.unseen import Unseen
-from jaxbacklash.effects import Contact, CoulombGround, CoulombJoint, Dahl, Damper, Gravity
+from jaxbacklash.effects import Contact, CoulombGround, CoulombJoint, Dahl, Damper, Gravity, Stribeck
 from jaxbacklash.system import System
 
 from .number_models import Model
@@ -80,3 +81,22 @@ def test_a_law_that_states_no_torque_is_not_compared(monkeypatch):
 )
 def test_only_friction_in_the_joint_that_one_trajectory_follows_is_asked(monkeypatch, trial):
     assert not given(monkeypatch, trial, 0.0)[0]
+
+
+@pytest.mark.parametrize(("hears", "tried"), [(5.0, True), (500.0, False)])
+def test_a_richer_relative_is_tried_where_the_quick_look_could_not_tell(monkeypatch, hears, tried):
+    """Of a law that explains: one trajectory with corners judges it badly from outside."""
+    monkeypatch.setattr(module, "told", lambda *_: hears)
+    trial = model(100.0, coulomb_joint=CoulombJoint(3.0))
+    search = Search(Bench())
+    search.bench.laws["stribeck"] = Stribeck
+    search.bench.outright = ()
+    added = []
+    monkeypatch.setattr(search, "may_help", lambda *_: False)
+    monkeypatch.setattr(search, "given", lambda *_: {})
+    monkeypatch.setattr(search, "add", lambda before, c: added.append(c.name) or model(90.0, stribeck=Stribeck(3.0, 4.0, 0.1)))
+    ranking = [SimpleNamespace(name=n, gain=0.0, predicted=1.0) for n in ("gravity", "stribeck")]
+    assert list(search.attempts(trial, ranking)) == (["stribeck"] if tried else [])
+    assert added == (["stribeck"] if tried else [])
+    guesses = search.untold(trial, "coulomb_joint", "stribeck")
+    assert [float(law.Ts) for law in guesses] == pytest.approx([3.0] * len(guesses))  # at the same level

@@ -283,9 +283,8 @@ class Search(Unseen):
                 if gain(simpler, richer) >= demanded(self.bench):
                     simpler = self.shaken(simpler)
                 # What leaves noise is not given up for what does not: the simpler one's search has stuck.
-                blind = shapeless(final, name, self.bench.slowest) and (explained(simpler) or not explained(final))
-                blind = blind and not acts_anyway(self.bench, simpler, richer, name)
-                if gain(simpler, richer) < demanded(self.bench) or blind:
+                acts = acts_anyway(self.bench, simpler, richer, name) or (explained(final) and not explained(simpler))
+                if gain(simpler, richer) < demanded(self.bench) or (shapeless(final, name, self.bench.slowest) and not acts):
                     settled, dropped = self.prune(self.settle(simpler))
                     return self.reduced([*steps, Step(settled, other, (name, *dropped), ())])
         return steps
@@ -407,10 +406,11 @@ class Search(Unseen):
             tried[c.name] = self.add(current, c, rival)
             if not looked and not explained(tried[c.name]) and not self.apart:
                 tried, looked = tried | self.memories(current, ranking), True
-        if current.tied or not explained(current):
-            # Beside a law that sticks its richer relative is judged badly from outside: it is always tried.
-            kin = [c for c in ranking if c.name not in tried and not current.names.isdisjoint(self.bench.laws[c.name].absorbs)]
-            tried |= {c.name: self.add(current, c) for c in kin}
+        # Beside a law that sticks its richer relative is judged badly from outside: it is tried unless the quick look could tell.
+        for c in (c for c in ranking if c.name not in tried):
+            simpler = sorted(current.names.intersection(self.bench.laws[c.name].absorbs))
+            if simpler and (not explained(current) or (current.tied and self.untold(current, simpler[0], c.name))):
+                tried[c.name] = self.add(current, c)
         return {name: trial for name, trial in tried.items() if math.isfinite(trial.criterion)}
 
     def may_help(self, current: Trial, candidate: Candidate) -> bool:

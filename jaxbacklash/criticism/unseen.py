@@ -47,23 +47,29 @@ class Unseen(Tried):
         """The model with friction that gives in place of its dry friction in the joint, by name, where noise hides from the quick
         look which of them it is: one trajectory tells them apart long before."""
         dry = self.dry_in_joint(trial)
-        size = 0.0 if dry is None else level(trial.system.effects[dry])
-        if dry is None or not size > 0.0 or not trial.tied or not adequate(trial) or self.bench.quick.blind:
+        if dry is None or not trial.tied or not adequate(trial):
             return {}
         found: dict[str, Trial] = {}
-        beside, system, free = without(self.bench, trial, dry)
-        friction = trial.system.effects[dry]
+        beside, _, _ = without(self.bench, trial, dry)
         for name in (names[0] for names in families(self.bench).values()):
-            laws = [stronger(law, size) for law in self.bench.laws[name].guesses(system, self.bench.quick.motion)]
-            least = demanded(self.bench) + np.log(self.bench.record.samples)
-            if told(self.bench.quick, free, laws[0], system, friction) > GLIMPSED * least:
-                continue
             key = frozenset(beside) | {name}, True
+            if not (laws := self.untold(trial, dry, name)):
+                continue
             for law in laws[:LIKELY] if key not in self.known else []:
                 self.progress(f"trying {name} in place of {dry}", 0.45)
                 self._keep(self.bench.fit({**beside, name: law}, trial, tied=True, followed=True, patience=WHOLE))
             found[name] = self.known[key]
         return found
+
+    def untold(self, trial: Trial, dry: str, name: str) -> list[AbstractEffect]:
+        """Guesses of a law of friction at the level of a model's dry friction; none where the quick look tells them apart."""
+        friction, quick = trial.system.effects[dry], self.bench.quick
+        if not (size := level(friction)) > 0.0 or quick.blind:
+            return []
+        _, system, free = without(self.bench, trial, dry)
+        laws = [stronger(law, size / max(level(law), 1e-300)) for law in self.bench.laws[name].guesses(system, quick.motion)]
+        least = demanded(self.bench) + np.log(self.bench.record.samples)
+        return laws if told(quick, free, laws[0], system, friction) <= GLIMPSED * least else []
 
     def imitated(self, before: Trial, after: Trial) -> bool:
         """Whether a sensor that averages over a short time explains as much as an addition to a model that leaves little."""
