@@ -67,9 +67,10 @@ class Unseen(Tried):
         if not (size := level(friction)) > 0.0 or quick.blind:
             return []
         _, system, free = without(self.bench, trial, dry)
-        laws = [stronger(law, size / max(level(law), 1e-300)) for law in self.bench.laws[name].guesses(system, quick.motion)]
+        guesses = [law for law in self.bench.laws[name].guesses(system, quick.motion) if level(law) > 0.0]
+        laws = [stronger(law, size / level(law)) for law in guesses]
         least = demanded(self.bench) + np.log(self.bench.record.samples)
-        return laws if told(quick, free, laws[0], system, friction) <= GLIMPSED * least else []
+        return laws if laws and told(quick, free, laws[0], system, friction) <= GLIMPSED * least else []
 
     def imitated(self, before: Trial, after: Trial) -> bool:
         """Whether a sensor that averages over a short time explains as much as an addition to a model that leaves little."""

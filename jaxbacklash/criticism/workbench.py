@@ -115,11 +115,17 @@ class Workbench:
         return noise_of_speed(self.record.t, self.record.channels[self.record.observed_name], self.layout.noise[0])
 
     def rests(self, port: str) -> bool:
-        """Whether the link rests for long at a port, ``joint`` or ``ground``, as far as the record tells motion from rest."""
-        m, samples = self.quick.motion, self.windows.samples
-        speed = m.dy - m.dx if port == "joint" else m.dy
+        """Whether the link rests for long at a port, ``joint`` or ``ground``, or may for all that the record tells."""
+        if self.quick.blind:
+            return True
+        samples, speed = self.windows.samples, self.sliding(port)
         rows = speed[: speed.size // samples * samples].reshape(-1, samples)
         return bool(np.mean(np.sqrt(np.mean(rows**2, axis=1)) < self.slowest) > RESTING)
+
+    def sliding(self, port: str) -> np.ndarray:
+        """Measured speed (N,) [rad/s] at which friction slides at a port."""
+        m = self.quick.motion
+        return np.asarray(m.dy - m.dx if port == "joint" else m.dy)
 
     def problem(
         self, effects: dict[str, AbstractEffect], joint: System, *, extra: Iterable[str] = (),
@@ -193,9 +199,8 @@ class Workbench:
 
     def fit_softly(self, trial: Trial, patience: int, way: int) -> Trial:
         """A tied model with dry friction fitted once more, by way of friction without corners."""
-        effects, m = self.effects(trial), self.quick.motion
-        speeds = {"joint": m.dy - m.dx, "ground": m.dy}
-        sliding = {n: float(np.sqrt(np.mean(speeds[e.port] ** 2))) for n, e in effects.items() if e.slides}
+        effects = self.effects(trial)
+        sliding = {n: float(np.sqrt(np.mean(self.sliding(e.port) ** 2))) for n, e in effects.items() if e.slides}
         problem, free = self.problem(effects, trial.system)
         still = Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
         self.fits += 1
