@@ -17,7 +17,7 @@ from jax.stages import Compiled
 from . import program_file
 
 SUFFIX = ".used"
-FIRST = 12
+FIRST = 40
 """Programs that are read ahead: what a run calls later depends on what it finds, and would be read while it computes."""
 LONG = 0.1
 """Programs that are so large a part of the largest are read first: a wait for others is short."""

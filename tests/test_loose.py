@@ -90,7 +90,8 @@ def test_every_effect_has_a_chance_to_be_another(monkeypatch):
     monkeypatch.setattr(search, "without", lambda trial, name: rest)
     monkeypatch.setattr(search, "add", lambda before, c: added.append(c.name) or SimpleNamespace(names=before.names | {c.name}))
     ranked = [SimpleNamespace(name=n) for n in ("preload", "gap_spring", "gravity", "drag", "ripple", "last")]
-    monkeypatch.setattr(loose, "rank", lambda bench, trial: ranked)
+    monkeypatch.setattr(loose, "may_join", lambda bench, trial: [c.name for c in ranked])
+    monkeypatch.setattr(loose, "rank", lambda bench, trial, names: [c for c in ranked if c.name in names])
     found = list(loose._around(search, both))
     assert found[0] is both
     assert added == ["gap_spring", "drag", "ripple"] * 2

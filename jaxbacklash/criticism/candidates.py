@@ -52,6 +52,18 @@ def rank(bench: Workbench, trial: Trial, names: Iterable[str] | None = None) -> 
     return sorted(found, key=lambda c: -c.gain)
 
 
+def may_join(bench: Workbench, trial: Trial) -> list[str]:
+    """Absent effects without internal states that a search adds: joint friction is one law, a richer one replaces it."""
+    rubbing = {n for n in trial.names if rubs(bench.laws[n])}
+    absent = [(n, law) for n, law in bench.static.items() if n not in trial.names]
+    return [n for n, law in absent if not rubs(law) or rubbing <= set(law.absorbs)]
+
+
+def rubs(law: type[AbstractEffect]) -> bool:
+    """Whether a law is friction in the joint, dry or one that gives."""
+    return bool(law.states and law.family) or (law.slides and law.port == "joint")
+
+
 def shaped(bench: Workbench, trial: Trial, name: str) -> AbstractEffect:
     """The law at its null strength, at the likeliest of the shapes it may have."""
     guesses = bench.laws[name].guesses(trial.system, bench.quick.motion)

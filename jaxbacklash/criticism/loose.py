@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from .candidates import rank
+from .candidates import may_join, rank
 from .evidence import demanded, explained, gain
 from .steps import Step
 from .tried import follows
@@ -55,7 +55,7 @@ def _around(search: Search, trial: Trial) -> Iterator[Trial]:
     yield trial
     for name in sorted(trial.names):
         rest = search.without(trial, name)
-        others = [c for c in rank(search.bench, rest) if c.name not in trial.names]
+        others = [c for c in rank(search.bench, rest, may_join(search.bench, rest)) if c.name not in trial.names]
         for candidate in others[:LIKELY]:
             search.progress(f"trying {candidate.name} in place of {name}", 0.65)
             yield search.add(rest, candidate)

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from ..fitting.search import ADEQUATE, silent
 from ..mechanics import AbstractEffect
-from .candidates import Candidate, rank
+from .candidates import Candidate, may_join, rank
 from .evidence import (
     AS_WELL,
     NOISE_FLOOR,
@@ -30,13 +30,10 @@ from .loose import by_free_windows
 from .memories import Member, families, may_replace, members
 from .steps import Step, leading
 from .tried import LOOSER, WHOLE, follows
-from .tuning import apart
-from .unseen import GLIMPSED, LIKELY, MOST_EFFECTS, Unseen
-from .workbench import Trial, Workbench, adequate, strengths
+from .unseen import GLIMPSED, LIKELY, MOST_EFFECTS, TRIED, Unseen
+from .workbench import Trial, Workbench, adequate
 from .yielding import yielding
 
-TRIED = 4
-"""Candidates that are really refitted at every stage."""
 CLOSE, HOPEFUL = 0.9, 0.2
 """Predicted gain, as a share of the best candidate's, that earns a refit: once noise is reached, and before."""
 CLEAR = 8.0
@@ -57,9 +54,9 @@ class Search(Unseen):
         seen: Callable[[Member], object] = lambda member: None,
         likely: Callable[[Trial], object] = lambda last: None,
     ) -> None:
-        super().__init__(bench, progress)
-        # Told the fit of the joint alone, laws with a memory that may come in, and a model that leaves but noise.
-        self.based, self.seen, self.likely = based, seen, likely
+        super().__init__(bench, progress, seen)
+        # Told the fit of the joint alone, and a model that leaves but noise.
+        self.based, self.likely = based, likely
         self.level: dict[tuple[str, ...], Trial] = {}
 
     def base(self) -> Trial:
@@ -298,13 +295,15 @@ class Search(Unseen):
         kept = {n: e for n, e in self.bench.effects(final).items() if n != name}
         ranking = next((s.ranking for s in steps if s.trial.names == frozenset(kept) and s.ranking), None)
         if ranking is None:
-            ranking = tuple(rank(self.bench, self.bench.fit(kept, final, patience=10)))
+            left = self.bench.fit(kept, final, patience=10)
+            ranking = tuple(rank(self.bench, left, may_join(self.bench, left)))
         own = next((c for c in ranking if c.name == name), None)
         near = [c for c in ranking if c.name not in final.names and c.gain > CLOSE * (own.gain if own else 0.0)][:2]
         if own and not self.bench.laws[name].states and at_a_bound(final, name):
             # As the limit of its shape it may stand in for any simpler law, whatever that promised far from here.
             near += [c for c in ranking if c.name not in final.names and c not in near and c.parameters < own.parameters]
         near = [c for c in near if c.name not in self.bench.laws[name].absorbs]
+        near = [c for c in near if kept.keys().isdisjoint(self.bench.laws[c.name].absorbs)]
         if name in [n for names in families(self.bench).values() for n in names]:
             near = [c for c, may in zip(near, may_replace(self.bench, final, name, [c.effect for c in near])) if may]
         near = [c for c in near if not self.ruled_out(final, frozenset(kept) | {c.name})]
@@ -321,7 +320,7 @@ class Search(Unseen):
             self.progress("judging absent effects" if not current.names else f"with {', '.join(sorted(current.names))}", 0.3)
             if current.tied and explained(current):
                 self.likely(current)
-            ranking = tuple(rank(self.bench, current))
+            ranking = tuple(rank(self.bench, current, may_join(self.bench, current)))
             tried = self.attempts(current, ranking)
             promised = {c.name for c in ranking if c.gain > SURE * demanded(self.bench)}
             lost = any(not t.tied or (t.cost > current.cost and n in promised) for n, t in tried.items())
@@ -429,17 +428,6 @@ class Search(Unseen):
         close = [n for n, t in tried.items() if t.criterion - lowest <= (1.0 - CLOSE) * (current.criterion - lowest)]
         undecided = len(close) > 1
         return {n: self.shaken(t if t.done else self.finish(t)) if undecided and n in close else t for n, t in tried.items()}
-
-    def memories(self, current: Trial, ranking: tuple[Candidate, ...]) -> dict[str, Trial]:
-        """Models with a law of friction that gives before it slips, where the quick look puts it before every static one.
-
-        It stands in place of dry friction in the joint, and of its own kin: what is to stand beside one such law has to do
-        better than another of its family alone.
-        """
-        rivals = [apart(c.effect, strengths(c.effect)) for c in ranking[:TRIED] if c.gain > 0.0]
-        each = (members(self.bench, current, names, rivals, self.seen) for names in families(self.bench).values())
-        first = [found[0] for found in each if found]
-        return {m.name: self.placed(current, m, tied=current.tied) for m in first}
 
     def best(self, current: Trial, tried: dict[str, Trial], least: float) -> str:
         """The simplest of the candidates that do as well as any: fewest parameters, acting before measuring only."""

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from ..fitting.search import silent
 from ..mechanics import AbstractEffect
 from ..parameters import specs, values, with_values
-from .candidates import Candidate
+from .candidates import Candidate, rubs
 from .cuts import cut_free
 from .evidence import demanded, explained, gain, significance
 from .memories import Member
@@ -221,8 +221,7 @@ class Tried:
 
     def rubs(self, trial: Trial) -> bool:
         """Whether a model has friction in the joint: what a record asks for beside it may be that friction's memory."""
-        effects = self.bench.effects(trial).values()
-        return any((e.family and e.states) or (e.slides and e.port == "joint") for e in effects)
+        return any(rubs(self.bench.laws[name]) for name in trial.names)
 
     def shaken(self, trial: Trial) -> Trial:
         """A tied model fitted `softly`, once in a search, if that finds something better."""
@@ -279,8 +278,7 @@ class Tried:
             arrived = adequate(fitted) and (fitted.done or fitted.cost < trial.cost)
             if tied and not arrived:
                 # Windows that are one trajectory can keep a law from where free ones find it.
-                free = self._keep(self.bench.fit(effects, trial, joint=joint, patience=patience, followed=True))
-                return self.settle(free)
+                return self.settle(self.placed(trial, member, tied=False, patience=patience))
         return self.known[key]
 
     def finish(self, trial: Trial) -> Trial:

@@ -8,6 +8,8 @@ no new compilation.
 
 from __future__ import annotations
 
+import copy
+
 import equinox as eqx
 import numpy as np
 
@@ -118,6 +120,20 @@ def own_rest(bench: Workbench, trial: Trial) -> np.ndarray:
     problem, unknowns = as_it_ended(bench, trial)
     predicted = minimise(problem, unknowns, Levenberg(limit=1)).stats["predicted"]
     return QuickLook(model_record(bench, predicted)).missing(trial.system, trial.free)[0]
+
+
+def as_if_right(bench: Workbench, trial: Trial, seed: int = 0) -> Workbench:
+    """The bench with a quick look at a tied trial's own motion, with noise drawn as the record has it: what a law seems to bring
+    there it brings by chance, or because the look smooths what it looks at."""
+    problem, unknowns = as_it_ended(bench, trial)
+    record = model_record(bench, minimise(problem, unknowns, Levenberg(limit=1)).stats["predicted"])
+    draw, channels = np.random.default_rng(seed), dict(record.channels)
+    for name, noise in ((record.observed_name, bench.layout.noise[0]), ("x", bench.layout.input_noise[0])):
+        if name in channels and not (name == "x" and bench.windows.by_force):
+            channels[name] = channels[name] + draw.normal(0.0, noise, record.samples)
+    looked = copy.copy(bench)
+    looked.quick = QuickLook(Record(record.t, channels))
+    return looked
 
 
 def as_it_ended(bench: Workbench, trial: Trial) -> tuple[Problem, Unknowns]:

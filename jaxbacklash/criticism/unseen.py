@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
+from ..fitting.search import silent
 from ..mechanics import AbstractEffect
+from .candidates import Candidate
 from .evidence import demanded, explained
-from .memories import families, without
+from .memories import Member, families, members, without
 from .tried import WHOLE, Tried
-from .tuning import level, stronger, told
-from .under_noise import blurred, own_rest, promises
-from .workbench import Trial, adequate
+from .tuning import apart, level, stronger, told
+from .under_noise import as_if_right, blurred, own_rest, promises
+from .workbench import Trial, Workbench, adequate, strengths
 
+TRIED = 4
+"""Candidates that are really refitted at every stage."""
 MOST_EFFECTS = 5
 """A model with more effects than this is no explanation any more."""
 GLIMPSED = 2.0
@@ -21,7 +27,38 @@ LIKELY, HALF = 2, 0.5
 
 
 class Unseen(Tried):
-    """Looks for laws with internal states under the noise."""
+    """Looks for laws with internal states under the noise; ``seen`` is told those of a family that may come in."""
+
+    def __init__(
+        self, bench: Workbench, progress: Callable[[str, float], None] = silent,
+        seen: Callable[[Member], object] = lambda member: None,
+    ) -> None:  # fmt: skip
+        super().__init__(bench, progress)
+        self.seen = seen
+
+    def memories(self, current: Trial, ranking: tuple[Candidate, ...]) -> dict[str, Trial]:
+        """Models with a law of friction that gives before it slips, where the quick look puts it before every static one.
+
+        It stands in place of dry friction in the joint, and of its own kin: what is to stand beside one such law has to do
+        better than another of its family alone.
+        """
+        rivals = [apart(c.effect, strengths(c.effect)) for c in ranking[:TRIED] if c.gain > 0.0]
+        quiet = current.tied and explained(current)
+        found: dict[str, Trial] = {}
+        for names in families(self.bench).values():
+            told = members(self.bench, current, names, rivals, (lambda member: None) if quiet else self.seen)
+            first = next(iter(told), None)
+            if first is None:
+                continue
+            if quiet and first.kin is None:
+                # Beside what explains, near rest the noise of the motion may speak for any friction that gives.
+                by_noise = members(as_if_right(self.bench, current), current, [first.name], rivals)
+                if by_noise and first.lead - by_noise[0].lead < demanded(self.bench):
+                    continue
+            if quiet:
+                self.seen(first)
+            found[first.name] = self.placed(current, first, tied=current.tied)
+        return found
 
     def unseen(self, trial: Trial, least: float) -> tuple[str, Trial] | None:
         """The best model with a law with internal states, by name, beside one fitted trajectory, if the law promises to take
