@@ -12,7 +12,7 @@ from .candidates import Candidate
 from .evidence import demanded, explained
 from .memories import Member, families, members, without
 from .tried import WHOLE, Tried
-from .tuning import apart, level, stronger, told
+from .tuning import Rival, apart, level, stronger, told
 from .under_noise import as_if_right, blurred, own_rest, promises
 from .workbench import Trial, Workbench, adequate, strengths
 
@@ -22,6 +22,8 @@ MOST_EFFECTS = 5
 """A model with more effects than this is no explanation any more."""
 GLIMPSED = 2.0
 """How many times what is demanded of an addition the quick look must show before such a law is tried beside what explains."""
+DRAWS = 4
+"""Draws of the noise that may speak for such a law where there is none."""
 LIKELY, HALF = 2, 0.5
 """Guesses of such a law that are fitted at most, and share of a gain that is enough to promise where more may come of it."""
 
@@ -46,15 +48,12 @@ class Unseen(Tried):
         quiet = current.tied and explained(current)
         found: dict[str, Trial] = {}
         for names in families(self.bench).values():
-            told = members(self.bench, current, names, rivals, (lambda member: None) if quiet else self.seen)
-            first = next(iter(told), None)
-            if first is None:
+            likely = members(self.bench, current, names, rivals, (lambda member: None) if quiet else self.seen)
+            if not likely:
                 continue
-            if quiet and first.kin is None:
-                # Beside what explains, near rest the noise of the motion may speak for any friction that gives.
-                by_noise = members(as_if_right(self.bench, current), current, [first.name], rivals)
-                if by_noise and first.lead - by_noise[0].lead < demanded(self.bench):
-                    continue
+            first = likely[0]
+            if quiet and first.kin is None and self.by_noise(current, first, rivals):
+                continue
             if quiet:
                 self.seen(first)
             found[first.name] = self.placed(current, first, tied=current.tied)
@@ -79,6 +78,17 @@ class Unseen(Tried):
                     found.append((name, self._keep(self.retied(fitted))))
         best = min(found, key=lambda one: one[1].criterion, default=None)
         return None if best is None or self.imitated(trial, best[1]) else best
+
+    def by_noise(self, current: Trial, member: Member, rivals: list[Rival]) -> bool:
+        """Whether a law seems to bring as much beside a tied trial where that is right, in any of some draws of the noise.
+
+        Near rest the noise of the motion may speak for any friction that gives, and by a lot.
+        """
+        for draw in range(DRAWS):
+            drawn = members(as_if_right(self.bench, current, draw), current, [member.name], rivals)
+            if drawn and member.lead - drawn[0].lead < demanded(self.bench):
+                return True
+        return False
 
     def given(self, trial: Trial) -> dict[str, Trial]:
         """The model with friction that gives in place of its dry friction in the joint, by name, where noise hides from the quick
