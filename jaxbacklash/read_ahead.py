@@ -18,7 +18,8 @@ from . import program_file
 
 SUFFIX = ".used"
 FIRST = 40
-"""Programs that are read ahead: what a run calls later depends on what it finds, and would be read while it computes."""
+"""Programs that are read ahead at most. What a run calls late depends on what it finds, but records of one rig find the like, and
+the largest, of friction that gives, take a second each to read."""
 LONG = 0.1
 """Programs that are so large a part of the largest are read first: a wait for others is short."""
 

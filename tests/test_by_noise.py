@@ -29,17 +29,18 @@ def test_it_must_bring_more_than_by_noise(monkeypatch, ahead, kin, misfit, tried
     bench = SimpleNamespace(laws=LAWS, quick="measured")
     lead = 70.0
     by_noise = [] if ahead is None else [lead - ahead * demanded(bench)]
-    told, draws = [], []
+    told = []
 
     def members(bench, current, names, rivals, seen=lambda member: None):
-        leads = [lead] if bench.quick == "measured" else by_noise * (draws[-1] == 2)
+        leads = {"measured": [lead], "silent": [], "speaks": by_noise}[bench.quick]
         found = [SimpleNamespace(name="dahl", lead=k, kin=kin) for k in leads]
         for member in found:
             seen(member)
         return found
 
     monkeypatch.setattr(unseen, "members", members)
-    monkeypatch.setattr(unseen, "as_if_right", lambda *how: draws.append(how[-1]) or SimpleNamespace(laws=LAWS, quick="drawn"))
+    drawn = [SimpleNamespace(laws=LAWS, quick=quick) for quick in ("silent", "silent", "speaks")]
+    monkeypatch.setattr(unseen, "as_if_right", lambda bench, trial, draws: drawn)
     search = Search(bench, seen=told.append)
     monkeypatch.setattr(search, "placed", lambda trial, member, tied: f"{member.name}, {'tied' if tied else 'free'}")
     trial = Model(frozenset({"coulomb_joint"}), 100.0, misfit=misfit)

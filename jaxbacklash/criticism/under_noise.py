@@ -9,6 +9,7 @@ no new compilation.
 from __future__ import annotations
 
 import copy
+from collections.abc import Iterator
 
 import equinox as eqx
 import numpy as np
@@ -117,23 +118,27 @@ def parabola(once: float, twice: float, share: float) -> tuple[float, float]:
 def own_rest(bench: Workbench, trial: Trial) -> np.ndarray:
     """What the quick look leaves of a tied trial's own motion, (R,): nothing is missing from that, but the look takes what the
     measuring chain does, a delay say, for straight lines."""
-    problem, unknowns = as_it_ended(bench, trial)
-    predicted = minimise(problem, unknowns, Levenberg(limit=1)).stats["predicted"]
-    return QuickLook(model_record(bench, predicted)).missing(trial.system, trial.free)[0]
+    return QuickLook(own_record(bench, trial)).missing(trial.system, trial.free)[0]
 
 
-def as_if_right(bench: Workbench, trial: Trial, seed: int = 0) -> Workbench:
-    """The bench with a quick look at a tied trial's own motion, with noise drawn as the record has it: what a law seems to bring
-    there it brings by chance, or because the look smooths what it looks at."""
+def as_if_right(bench: Workbench, trial: Trial, draws: int) -> Iterator[Workbench]:
+    """The bench with a quick look at a tied trial's own motion, each time with noise drawn as the record has it: what a law
+    seems to bring there it brings by chance, or because the look smooths what it looks at."""
+    record, random = own_record(bench, trial), np.random.default_rng(0)
+    noises = {record.observed_name: bench.layout.noise[0]}
+    if not bench.windows.by_force:
+        noises["x"] = bench.layout.input_noise[0]
+    for _ in range(draws):
+        drawn = {n: v + random.normal(0.0, noises[n], v.size) if n in noises else v for n, v in record.channels.items()}
+        looked = copy.copy(bench)
+        looked.quick = QuickLook(Record(record.t, drawn))
+        yield looked
+
+
+def own_record(bench: Workbench, trial: Trial) -> Record:
+    """The trajectory at which the fit of a tied trial had ended, at the samples of the record."""
     problem, unknowns = as_it_ended(bench, trial)
-    record = model_record(bench, minimise(problem, unknowns, Levenberg(limit=1)).stats["predicted"])
-    draw, channels = np.random.default_rng(seed), dict(record.channels)
-    for name, noise in ((record.observed_name, bench.layout.noise[0]), ("x", bench.layout.input_noise[0])):
-        if name in channels and not (name == "x" and bench.windows.by_force):
-            channels[name] = channels[name] + draw.normal(0.0, noise, record.samples)
-    looked = copy.copy(bench)
-    looked.quick = QuickLook(Record(record.t, channels))
-    return looked
+    return model_record(bench, minimise(problem, unknowns, Levenberg(limit=1)).stats["predicted"])
 
 
 def as_it_ended(bench: Workbench, trial: Trial) -> tuple[Problem, Unknowns]:

@@ -84,8 +84,8 @@ class Unseen(Tried):
 
         Near rest the noise of the motion may speak for any friction that gives, and by a lot.
         """
-        for draw in range(DRAWS):
-            drawn = members(as_if_right(self.bench, current, draw), current, [member.name], rivals)
+        for bench in as_if_right(self.bench, current, DRAWS):
+            drawn = members(bench, current, [member.name], rivals)
             if drawn and member.lead - drawn[0].lead < demanded(self.bench):
                 return True
         return False
