@@ -94,17 +94,15 @@ def identifiable(case: Case) -> bool:
 def judge(case: Case, found: Refinement, seconds: float) -> dict[str, Any]:
     """What one record says about the method."""
     truth = {"backlash": case.rig.backlash, "stiffness": case.rig.stiffness, "damping": case.rig.damping}
-    inside = {}
-    for name, value in truth.items():
-        ci = found.fit.parameters[name].ci95
-        inside[name] = bool(ci is not None and ci[0] <= value <= ci[1])
+    intervals = {name: found.fit.parameters[name].ci95 for name in truth}
+    inside = {name: bool(ci is not None and ci[0] <= truth[name] <= ci[1]) for name, ci in intervals.items()}
     unknown = bool(set(case.hidden) & set(OUTSIDE_CATALOGUE))
     exact = family(found.effects) == family(case.hidden)
     right = not found.verdict.complete if unknown else exact
     return {
         "number": case.number, "hidden": list(case.hidden), "kind": case.kind, "found": list(found.effects),
         "alternatives": [list(a) for a in found.alternatives], "verdict": found.verdict.word, "right": right,
-        "rms": [s.fit.score.rms for s in found.stages], "inside": inside, "seconds": seconds,
+        "rms": [s.fit.score.rms for s in found.stages], "inside": inside, "intervals": intervals, "seconds": seconds,
         "joint": {n: found.fit.parameters[n].value for n in truth}, "truth": truth,
         "identifiable": True if right or unknown or not case.hidden else identifiable(case),
     }  # fmt: skip
