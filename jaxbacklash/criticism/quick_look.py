@@ -31,6 +31,8 @@ class QuickLook:
         self.blind = record.kind == "transmitted"  # the link is not seen, so there is nothing to regress on
         self._columns: dict[str, tuple[np.ndarray, np.ndarray]] = {}
         self._bump = Bump(record.samples, record.dt)
+        self.spacing = self._bump.stride * record.dt  # of the rows [s]
+        self.passes = self._bump.passes
         zero = np.zeros(record.samples)
         raw = record.channels[record.observed_name]
         carried = record.channels.get("x", zero) if record.observed_name == "z" else zero
@@ -38,16 +40,20 @@ class QuickLook:
 
     def missing(self, system: System, free: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
         """Missing torque under the bump (R,), and how it falls with each free parameter of the model (R, q)."""
-        names = list(specs(system))
-        seeds = np.zeros((len(free), len(names)))
-        seeds[np.arange(len(free)), [names.index(n) for n in free]] = 1.0
-        torque, columns = torques(system, seeds, self.motion)
+        torque, columns = self.along(system, free)
         left = float(system.inertia) * self._acceleration - self.average(self.motion.force + torque)
         by = self.average(columns)
         for j, name in enumerate(free):
             if name == "inertia":
                 by[j] = -self._acceleration
         return left, by.T
+
+    def along(self, system: System, free: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
+        """All torque on the link along the motion (N,), and how it changes with each free parameter of the model (q, N)."""
+        names = list(specs(system))
+        seeds = np.zeros((len(free), len(names)))
+        seeds[np.arange(len(free)), [names.index(n) for n in free]] = 1.0
+        return torques(system, seeds, self.motion)
 
     def column(self, effect: AbstractEffect, system: System) -> np.ndarray:
         """Torque of an effect on the measured motion, under the bump (R,)."""

@@ -26,6 +26,7 @@ from .candidates import Candidate
 from .experiment import Experiment, separate
 from .foresight import Foresight
 from .search import Search
+from .unnamed import unnamed
 from .verdict import Verdict, judge_rest
 from .workbench import Trial, Workbench, adequate, pruned
 
@@ -138,7 +139,7 @@ def refine(
     stages = tuple(Stage(s.added, s.dropped, fit, s.ranking, s.evidence) for s, fit in zip(steps, fits))
     clock["score"] = time.perf_counter()
     others = tuple(sorted(search.level, key=lambda names: search.level[names].criterion))
-    verdict = judge_rest(steps[-1].trial, [s.fit for s in stages])
+    verdict = judge_rest(steps[-1].trial, [s.fit for s in stages], unnamed(bench, steps[-1].trial))
     experiments = []
     for names in others[:SEPARATED]:
         progress(f"looking for an experiment that separates {' + '.join(names)}", 0.88)

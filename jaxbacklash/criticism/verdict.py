@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ..fitting import Fit
 from .evidence import at_a_limit
+from .unnamed import Unnamed
 from .workbench import Trial
 
 NEAR_NOISE, SIGMAS = 1.01, 3.0
@@ -35,12 +36,12 @@ def most_of_noise(trial: Trial) -> float:
     return NEAR_NOISE + SIGMAS / math.sqrt(2.0 * max(freedom, 1.0))
 
 
-def judge_rest(final: Trial, fits: list[Fit]) -> Verdict:
-    """Whether the last model leaves nothing but noise."""
+def judge_rest(final: Trial, fits: list[Fit], beyond: Unnamed | None = None) -> Verdict:
+    """Whether the last model leaves nothing but noise; ``beyond`` is a torque outside the catalogue that it clearly asks for."""
     first, last = fits[0], fits[-1]
     most = most_of_noise(final)
     strained = [name for name in sorted(final.names) if at_a_limit(final, name)]
-    complete = final.misfit < most and last.score.median < 1.1 and not strained
+    complete = final.misfit < most and last.score.median < 1.1 and not strained and beyond is None
     named = ", ".join(sorted(final.names))
     left = "what is left is noise"
     if last.score.rms > 1.1:
@@ -54,6 +55,13 @@ def judge_rest(final: Trial, fits: list[Fit]) -> Verdict:
         text = (
             f"Missing in the base model: {named}. With it the prediction error falls from {first.score.rms:.3g} to "
             f"{last.score.rms:.3g} times the noise, and {left}."
+        )
+    elif beyond is not None and final.misfit < most:
+        text = f"Incomplete: the prediction error is {last.score.rms:.3g} times the noise"
+        text += f" with {named} added" if named else ""
+        text += (
+            f", but what is left is not noise alone: a torque that goes with {beyond.words} would clearly lower it (evidence "
+            f"{beyond.fall:.0f}), and no effect in the catalogue exerts that."
         )
     else:
         text = f"Incomplete: the misfit is still {last.score.rms:.3g} times the noise"

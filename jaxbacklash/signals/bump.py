@@ -24,9 +24,15 @@ class Bump:
         first = -8.0 * tau * base**3 / (reach * dt)
         second = (48.0 * tau**2 * base**2 - 8.0 * base**3) / (reach * dt) ** 2
         self._orders = base**4, first, second
-        self._stride = max(1, reach // 4)
+        self._times = tau * reach * dt
+        self.stride = max(1, reach // 4)
 
     def against(self, values: np.ndarray, order: int = 0) -> np.ndarray:
         """One or several signals (..., N) summed against the bump or its derivative of order 1 or 2: (..., R)."""
         bump = self._orders[order]
-        return np.lib.stride_tricks.sliding_window_view(values, bump.size, axis=-1)[..., :: self._stride, :] @ bump
+        return np.lib.stride_tricks.sliding_window_view(values, bump.size, axis=-1)[..., :: self.stride, :] @ bump
+
+    def passes(self, hertz: np.ndarray) -> np.ndarray:
+        """Share of a sine that stays of it under the bump, by its frequency (F,) [Hz]."""
+        bump = self._orders[0]
+        return np.abs(np.cos(2.0 * np.pi * np.outer(hertz, self._times)) @ bump) / float(np.sum(bump))

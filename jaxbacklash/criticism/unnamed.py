@@ -1,0 +1,165 @@
+r"""Does what a model leaves hang together in a way that no law of the catalogue has? The last test before a model is complete.
+
+A misfit over all samples hides what is small; along one direction it shows (as powers of what was fitted do in Ramsey's RESET,
+1969). Simple torques that the catalogue does not hold, products of the motion's coordinates and a rhythm of its own, are held
+against the model's own motion, free of noise: the quick look proposes, the score of the fitted trajectory decides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import equinox as eqx
+import numpy as np
+
+from ..fitting.levenberg import Levenberg, minimise
+from ..pointwise import along
+from ..system import System
+from .along_motion import Motion
+from .evidence import SURE, demanded, explained
+from .quick_look import QuickLook, whitener
+from .under_noise import answered, as_it_ended, model_record, parabola
+from .workbench import Trial, Workbench
+
+LOOKED = 3
+"""Torques, the likeliest by the quick look, that are held against the trajectory."""
+BY_CHANCE = 8.0
+"""What the quick look shows of a torque by chance where nothing is missing, at most: less is not held against the trajectory."""
+FURTHEST = 3.0
+"""Size, as a multiple of what the quick look says, up to which a torque is applied."""
+ALIKE = 0.01
+"""Share of a torque, squared, that the model cannot make up for by itself: with less it is no torque of its own."""
+SLOWEST, FINER, PASSED = 3, 4, 0.2
+"""Periods of a rhythm in a record at least, steps of frequency to a period more, and share of it that the look lets pass."""
+
+
+@dataclass(frozen=True)
+class Unnamed:
+    """A torque that no law in the catalogue exerts: ``words`` for what it goes with, ``fall`` of the sum of squares, in units of
+    the noise, that it promises."""
+
+    words: str
+    fall: float
+
+
+@dataclass(frozen=True)
+class Glimpse:
+    """A torque (N,) along the model's own motion, at its likeliest size: one of ``tried`` of its kind."""
+
+    words: str
+    torque: np.ndarray
+    evidence: float
+    tried: int
+
+    @property
+    def chance(self) -> float:
+        """What the best of so many torques brings where none is missing."""
+        return 2.0 * float(np.log(self.tried))
+
+
+def unnamed(bench: Workbench, trial: Trial) -> Unnamed | None:
+    """The torque outside the catalogue that a model of one trajectory clearly asks for, the clearest; None where there is none.
+
+    Of a model that leaves more than noise, and of a link that is not seen, nothing is told.
+    """
+    if not trial.tied or bench.quick.blind or not explained(trial):
+        return None
+    problem, unknowns = as_it_ended(bench, trial)
+    ended = minimise(problem, unknowns, Levenberg(limit=1)).stats
+    still = float(ended["cost"] - ended["promise"])
+    own = QuickLook(model_record(bench, ended["predicted"]))
+    applied = np.asarray(bench.windows.force)
+    edges = np.asarray(bench.windows.t0)[:, None] + float(bench.windows.panel) * np.arange(applied.shape[1])
+    found = []
+    for seen in glimpses(bench, trial, own):
+        torque = np.interp(edges, own.motion.t, seen.torque)
+
+        def rise(share: float, torque: np.ndarray = torque) -> float:
+            return answered(eqx.tree_at(lambda p: p.windows.force, problem, applied + share * torque), unknowns)[0] - still
+
+        fall = 2.0 * best_fall(rise) / (max(1.0, trial.misfit**2) * trial.correlation)
+        if fall > seen.chance + SURE * demanded(bench):
+            found.append(Unnamed(seen.words, fall))
+    return max(found, key=lambda one: one.fall, default=None)
+
+
+def best_fall(rise: Callable[[float], float]) -> float:
+    """The largest fall of a cost over sizes of a torque; ``rise`` tells how far the cost rises with one."""
+    once, twice = rise(1.0), rise(2.0)
+    slope, curvature = parabola(once, twice, 1.0)
+    best = -slope / curvature if np.isfinite(curvature) and curvature > 0.0 else 0.0
+    # What the parabola says of its own lowest point is not believed but tried: corners bend it.
+    return -min(once, twice, rise(float(np.clip(best, -FURTHEST, FURTHEST))))
+
+
+def glimpses(bench: Workbench, trial: Trial, own: QuickLook) -> list[Glimpse]:
+    """The likeliest torques outside the catalogue beside a trial, whose own motion looks like ``own``.
+
+    What the model's parameters can do is taken off them, so that they bend its trajectory no more than they have to.
+    """
+    left, by = bench.quick.missing(trial.system, trial.free)
+    left = left - own.missing(trial.system, trial.free)[0]
+    white = whitener(left - by @ np.linalg.lstsq(by, left, rcond=None)[0])
+    seen, ways = white(left), white(by)
+    rest = seen - ways @ np.linalg.lstsq(ways, seen, rcond=None)[0]
+
+    words, torques = zip(*products(trial.system, own.motion).items())
+    hertz, wave = rhythm(own, rest, white)
+    rows = np.stack([*torques, wave])
+    columns = white(own.average(rows).T)
+    made_up = np.linalg.lstsq(ways, columns, rcond=None)[0]
+    whole, columns = np.sum(columns**2, axis=0), columns - ways @ made_up
+    power = np.sum(columns**2, axis=0)
+    power = np.where(power > ALIKE * whole, np.maximum(power, 1e-300), np.inf)
+    sizes = columns.T @ rest / power
+    evidence = sizes**2 * np.where(np.isfinite(power), power, 0.0) / max(float(np.mean(rest**2)), 1e-300)
+    rows = sizes[:, None] * (rows - made_up.T @ own.along(trial.system, trial.free)[1])
+    told, tried = [*words, f"a rhythm of its own of {hertz:.3g} Hz"], [*(len(words) for _ in words), rest.size]
+    found = [Glimpse(*one) for one in zip(told, rows, evidence, tried)]
+    likely = [g for g in found if g.evidence > max(BY_CHANCE, g.chance)]
+    return sorted(likely, key=lambda g: -g.evidence)[:LOOKED]
+
+
+def products(system: System, m: Motion) -> dict[str, np.ndarray]:
+    """Torques (N,) of no law in the catalogue, by what they go with: products of the coordinates of joint, link and base."""
+    now = along(system, *m.rows).now
+    pressed, touching = np.asarray(now.deflection), np.asarray(now.contact)
+    free = 1.0 - touching
+    z, dz, y, dy, dx = m.y - m.x, m.dy - m.dx, m.y, m.dy, m.dx
+    return {
+        "deflection and speed in contact": pressed * np.abs(dz),
+        "deflection and the square of speed in contact": pressed * dz**2,
+        "the square of deflection": pressed * np.abs(pressed),
+        "the square of deflection, one way": pressed**2,
+        "speed and the square of deflection": dz * pressed**2,
+        "the square of speed in contact": touching * dz * np.abs(dz),
+        "the square of speed in contact, one way": touching * dz**2,
+        "the square of speed in the play": free * dz * np.abs(dz),
+        "the square of speed in the play, one way": free * dz**2,
+        "position in the play": free * z,
+        "position and speed in the play": free * z * np.abs(dz),
+        "the square of the angle": y**2,
+        "the cube of the angle": y**3,
+        "angle and speed of the link": y * np.abs(dy),
+        "angle and the square of the link's speed": y * dy**2,
+        "speed of the link and the square of its angle": dy * y**2,
+        "the link's speed": dy,
+        "the square of the link's speed, one way": dy**2,
+        "the cube of the link's speed": dy**3,
+        "the base's speed": dx,
+        "the square of the base's speed": dx * np.abs(dx),
+    }
+
+
+def rhythm(look: QuickLook, rest: np.ndarray, white: Callable[[np.ndarray], np.ndarray]) -> tuple[float, np.ndarray]:
+    """The sine that is likeliest in what is left: its frequency [Hz], and its torque (N,) at the likeliest phase."""
+    spectrum = np.abs(np.fft.rfft(rest, FINER * rest.size)) ** 2
+    hertz = np.fft.rfftfreq(FINER * rest.size, look.spacing)
+    slow = SLOWEST / (rest.size * look.spacing)
+    known = (hertz >= slow) & (look.passes(hertz) > PASSED)
+    best = float(hertz[np.argmax(np.where(known, spectrum, -1.0))])
+    angle = 2.0 * np.pi * best * (look.motion.t - look.motion.t[0])
+    pair = np.stack([np.cos(angle), np.sin(angle)])
+    return best, np.linalg.lstsq(white(look.average(pair).T), rest, rcond=None)[0] @ pair
+
