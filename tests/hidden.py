@@ -22,6 +22,12 @@ def hidden(name, kind, seed, seconds=12.0, **values):
     return record, rig, effects, truth
 
 
+def noisier(record, times, seed):
+    """The same record with so many times its noise."""
+    rng, more = np.random.default_rng(seed), NOISE * np.sqrt(times**2 - 1.0)
+    return jb.Record(record.t, {n: v + more * rng.standard_normal(v.size) for n, v in record.channels.items()})
+
+
 def missing_from(system, rig, truth, torque):
     """The torque that a system lacks along the true motion (N,), when a rig's own law and ``torque`` (N,) acted."""
     z, dz = truth["z"], truth["v"] - truth["dx"]

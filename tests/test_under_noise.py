@@ -15,15 +15,9 @@ from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting.levenberg import Levenberg, Minimum
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.records import Record
-from tests.hidden import NOISE, hidden
+from tests.hidden import NOISE, hidden, noisier
 
 LINK = {"J2": 0.4, "k2": 13400.0, "c2": 1.4}
-
-
-def noisier(record, times, seed):
-    """The same record with so many times its noise."""
-    rng, more = np.random.default_rng(seed), NOISE * np.sqrt(times**2 - 1.0)
-    return Record(record.t, {n: v + more * rng.standard_normal(v.size) for n, v in record.channels.items()})
 
 
 def trajectory(record, rig):

@@ -1,0 +1,155 @@
+"""Torques outside the catalogue: seen along one direction where the sum of all looks like noise, and not where none is."""
+
+from types import SimpleNamespace
+
+import equinox as eqx
+import numpy as np
+import pytest
+
+import jaxbacklash as jb
+from jaxbacklash.criticism.evidence import SURE, demanded, explained
+from jaxbacklash.criticism.quick_look import QuickLook
+from jaxbacklash.criticism.unnamed import Unnamed, best_fall, glimpses, rhythm, unnamed
+from jaxbacklash.criticism.verdict import judge_rest
+from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.fitting.setup import base_system
+from jaxbacklash.records import Record
+from jaxbacklash.signals import Bump
+
+from .hidden import NOISE, hidden, noisier
+
+RHYTHM = {"A": 0.8, "w": 33.0, "phi": 0.4}
+
+
+def fitted(record, inertia, *names):
+    """A workbench, and the joint with some effects fitted to all of the record in one piece."""
+    base, free, _ = base_system(record, "joint", inertia)
+    bench = Workbench(record, base, free, 0.2)
+    effects = {n: bench.laws[n].guesses(base)[0] for n in names}
+    return bench, bench.fit(effects, bench.fit(effects, patience=60), tied=True, patience=60)
+
+
+@pytest.mark.parametrize(
+    ("kind", "values", "beside", "words"),
+    [
+        ("unknown_disturbance", RHYTHM, (), "a rhythm of its own of 5.25 Hz"),  # 33 rad/s
+        ("speed_stiffness", {"s": 700.0}, ("cubic_stiffness",), "deflection and speed in contact"),
+    ],
+)
+def test_what_no_law_has_is_seen_though_all_that_is_left_looks_like_noise(kind, values, beside, words):
+    record, rig, _, _ = hidden(kind, "multisine", 3, **values)
+    bench, trial = fitted(noisier(record, 20.0, 4), rig.inertia, *beside)
+    assert explained(trial)
+    found = unnamed(bench, trial)
+    assert found is not None
+    assert found.words == words
+    assert found.fall > 4.0 * SURE * demanded(bench)
+
+
+@pytest.mark.slow
+def test_what_it_promises_comes_true():
+    """A user's own law of that form, fitted beside the model, takes off the sum of squares what was foretold."""
+    record, rig, _, _ = hidden("speed_stiffness", "multisine", 3, s=700.0)
+    record = noisier(record, 20.0, 4)
+    bench, trial = fitted(record, rig.inertia, "cubic_stiffness")
+    found = unnamed(bench, trial)
+
+    class Stiffening(jb.AbstractEffect):
+        s: float = jb.param(unit="N m s/rad^2", null=0.0, default=300.0)
+        catalogued = False
+
+        def torque(self, now):
+            return -self.s * now.deflection * abs(now.dz)
+
+    base = eqx.tree_at(lambda s: s.effects, trial.system, {n: trial.system.effects[n] for n in trial.names})
+    fits = [
+        jb.fit(record, system=base if law is None else base.with_effects(law), free=free, starts=1)
+        for law, free in ((None, trial.free), (Stiffening(), (*trial.free, "stiffening.s")))
+    ]
+    assert all(f.tied for f in fits)
+    assert 2.0 * (fits[0].cost - fits[1].cost) == pytest.approx(found.fall, rel=0.2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("kind", "times"), [("chirp", 1.0), ("multisine", 10.0), ("stepped", 30.0)])
+def test_a_right_model_asks_for_none(kind, times):
+    """Of a dozen measurements of three joints, none."""
+    for seed in (5, 6, 7):
+        record, rig, _, _ = hidden(None, kind, seed)
+        for draw in range(4):
+            bench, trial = fitted(noisier(record, times, 100 * seed + draw), rig.inertia)
+            assert explained(trial)
+            assert unnamed(bench, trial) is None
+
+
+def test_friction_that_the_model_holds_is_no_unnamed_torque():
+    record, rig, _, _ = hidden("coulomb_joint", "chirp", 4)
+    bench, trial = fitted(record, rig.inertia, "coulomb_joint")
+    assert explained(trial)
+    assert unnamed(bench, trial) is None
+
+
+def test_nothing_is_told_of_a_model_that_leaves_more_than_noise():
+    record, rig, _, _ = hidden("gravity", "multisine", 3)
+    bench, trial = fitted(record, rig.inertia)
+    assert not explained(trial)
+    assert unnamed(bench, trial) is None
+
+
+def test_what_the_model_can_do_itself_is_no_glimpse():
+    """Speed in the play is speed less speed in contact: no torque of its own beside contact damping and damping."""
+    record, rig, _, _ = hidden("contact_damping", "multisine", 3)
+    bench, trial = fitted(record, rig.inertia, "contact_damping")
+    assert not any("speed in the play" in g.words for g in glimpses(bench, trial, bench.quick))
+
+
+def test_a_rhythm_is_found_at_its_frequency_and_phase():
+    t = np.arange(5000) / 500.0
+    rng = np.random.default_rng(1)
+    x, z = 0.05 * np.sin(20.0 * t), 0.03 * np.sin(20.0 * t) + NOISE * rng.standard_normal(t.size)
+    look = QuickLook(Record(t, {"x": x, "z": z}))
+    wave = 2.0 * np.cos(2.0 * np.pi * 7.32 * t + 0.7)
+    seen = look.average(wave)
+    rest = seen + 0.5 * seen.std() * rng.standard_normal(seen.size)
+    hertz, torque = rhythm(look, rest, lambda rows: rows)
+    assert hertz == pytest.approx(7.32, abs=0.5 / t[-1])
+    assert np.corrcoef(torque, wave)[0, 1] > 0.98
+    assert np.std(torque) == pytest.approx(np.std(wave), rel=0.15)
+
+
+@pytest.mark.parametrize("hertz", [0.5, 5.0, 12.0, 25.0])
+def test_the_bump_passes_as_much_of_a_sine_as_it_says(hertz):
+    t = np.arange(5000) / 500.0
+    bump = Bump(t.size, t[1])
+    through = np.std(bump.against(np.sin(2.0 * np.pi * hertz * t))) / np.std(np.sin(2.0 * np.pi * hertz * t))
+    assert bump.passes(np.array([hertz]))[0] * bump.against(np.ones(t.size))[0] == pytest.approx(through, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("rise", "fall"),
+    [
+        (lambda s: 2.0 * (s - 0.5) ** 2 - 0.5, 0.5),  # between what is tried
+        (lambda s: (s - 1.0) ** 2 - 1.0, 1.0),
+        (lambda s: -s, 2.0),  # no lowest point: the farther of what was tried
+        (lambda s: 5.0 * s, 0.0),  # nothing to gain: its lowest point is at no torque
+        (lambda s: abs(s - 1.0) - 1.0, 1.0),  # a corner
+    ],
+)
+def test_the_best_fall_is_tried_and_not_believed(rise, fall):
+    assert best_fall(rise) == pytest.approx(fall)
+
+
+@pytest.mark.parametrize("names", [(), ("cubic_stiffness",)])
+def test_the_verdict_says_what_goes_with_the_rest(names):
+    joint = jb.base_motion_joint(inertia=3.0, backlash=0.02, stiffness=1e4, damping=20.0)
+    final = SimpleNamespace(
+        names=frozenset(names), free=(), system=joint.with_effects(*(jb.catalogue()[n]() for n in names)), misfit=1.005,
+        cost=1e4 * 1.005**2,
+    )  # fmt: skip
+    fits = [SimpleNamespace(score=SimpleNamespace(rms=rms, median=1.0)) for rms in (1.2, 1.0)]
+    assert judge_rest(final, fits).complete
+    verdict = judge_rest(final, fits, Unnamed("deflection and speed in contact", 530.4))
+    assert verdict.word == "incomplete"
+    assert "goes with deflection and speed in contact" in verdict.text
+    assert "evidence 530" in verdict.text
+    assert all(name in verdict.text for name in names)
