@@ -209,7 +209,8 @@ class Tried:
             return before
         more = after.names - before.names
         beside = self.without(after, next(iter(more))) if len(more) == 1 and before.names < after.names else before
-        return self.shaken(min(before, beside, key=lambda t: t.cost))
+        # What is fitted to windows apart is no match for one trajectory: so is a link that floats, once its friction is left out.
+        return self.shaken(min((t for t in (before, beside) if t.tied), key=lambda t: t.cost))
 
     def dry(self, trial: Trial) -> bool:
         """Whether a model has dry friction, whose corners a search may stick at."""
