@@ -3,8 +3,10 @@
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from jaxbacklash.criticism.candidates import _gain
 from jaxbacklash.criticism.search import Search, Step
 from jaxbacklash.criticism.tried import SLIGHT
 from jaxbacklash.effects import CoulombJoint, Gravity, Stribeck
@@ -416,3 +418,17 @@ def test_windows_that_friction_has_stuck_begin_again_from_the_data(misfits, left
     search.bench.fit = lambda effects, joint=None, patience=0: search.bench.answers.pop(0)
     assert search.renewed(stuck).misfit == left
     assert not search.bench.answers
+
+
+def test_no_law_with_states_is_tried_beside_a_link_that_is_not_seen_and_floats():
+    """In windows apart such a link follows any force: what a state of its own explains there is nothing."""
+    bench = SimpleNamespace(outright=("coulomb_ground",), grips=lambda names: "coulomb_ground" in names, laws={})
+    search = Search.__new__(Search)
+    search.bench = bench
+    assert search.hidden(SimpleNamespace(names=frozenset({"gravity"}), misfit=300.0)) == []
+
+
+def test_a_candidate_whose_trajectory_runs_away_promises_nothing():
+    step, gain = _gain(np.array([[1.0, np.inf], [np.inf, 2.0]]), np.array([1.0, 1.0]), 1)
+    assert gain == 0.0
+    assert np.array_equal(step, np.zeros(2))

@@ -114,6 +114,8 @@ def _score(bench: Workbench, trial: Trial, shapes: dict[str, AbstractEffect], gr
 
 
 def _gain(schur: np.ndarray, pull: np.ndarray, q: int) -> tuple[np.ndarray, float]:
+    if not (np.all(np.isfinite(schur)) and np.all(np.isfinite(pull))):
+        return np.zeros(pull.size), 0.0  # a trajectory that runs away with it promises nothing
     scale = np.sqrt(np.maximum(np.diag(schur), 1e-300))
     scaled, score = schur / np.outer(scale, scale), pull / scale
     step = np.linalg.pinv(scaled, rcond=1e-10, hermitian=True) @ score

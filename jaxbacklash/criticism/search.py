@@ -471,6 +471,8 @@ class Search(Unseen):
     def hidden(self, start: Trial) -> list[Trial]:
         """Models with a law that has internal states beside those of ``start``, the likeliest of a family, until one explains."""
         found: list[Trial] = []
+        if self.bench.outright and not self.bench.grips(start.names):
+            return found  # a link that is not seen and floats follows anything in windows apart
         for names in families(self.bench).values():
             # Friction's memory was looked for at every stage; here it is the last resort.
             if start.names.isdisjoint(names) and not explained(start):
