@@ -47,9 +47,8 @@ def promises(
     """
     guesses = law.guesses(trial.system, bench.quick.motion)
     problem, unknowns = as_it_ended(bench, trial)
-    windows = bench.windows
-    applied = np.asarray(windows.force)
-    edges = np.asarray(windows.t0)[:, None] + float(windows.panel) * np.arange(applied.shape[1])
+    applied = np.asarray(bench.windows.force)
+    edges = panel_edges(bench)
 
     def answer(torque: np.ndarray) -> tuple[float, Prediction]:
         return answered(eqx.tree_at(lambda p: p.windows.force, problem, applied + torque), unknowns)
@@ -76,6 +75,12 @@ def promises(
         if abs(answer(FURTHER * SHARE * torque)[0] - still - further) < BENT * abs(further):
             found.append((fall, guess.scaled(float(np.clip(-slope / curvature, WEAKEST, STRONGEST)))))
     return sorted(found, key=lambda promise: -promise[0])
+
+
+def panel_edges(bench: Workbench) -> np.ndarray:
+    """Times (W, P + 1) at which a force on the link is given [s]."""
+    windows = bench.windows
+    return np.asarray(windows.t0)[:, None] + float(windows.panel) * np.arange(np.shape(windows.force)[1])
 
 
 def blurred(bench: Workbench, trial: Trial) -> float:

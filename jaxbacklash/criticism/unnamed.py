@@ -19,7 +19,7 @@ from ..system import System
 from .along_motion import Motion
 from .evidence import SURE, demanded, explained
 from .quick_look import QuickLook, whitener
-from .under_noise import answered, as_it_ended, model_record, parabola
+from .under_noise import answered, as_it_ended, model_record, panel_edges, parabola
 from .workbench import Trial, Workbench
 
 LOOKED = 3
@@ -70,7 +70,7 @@ def unnamed(bench: Workbench, trial: Trial) -> Unnamed | None:
     still = float(ended["cost"] - ended["promise"])
     own = QuickLook(model_record(bench, ended["predicted"]))
     applied = np.asarray(bench.windows.force)
-    edges = np.asarray(bench.windows.t0)[:, None] + float(bench.windows.panel) * np.arange(applied.shape[1])
+    edges = panel_edges(bench)
     found = []
     for seen in glimpses(bench, trial, own):
         torque = np.interp(edges, own.motion.t, seen.torque)
