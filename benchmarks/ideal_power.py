@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.stats import norm
 
+import jaxbacklash.effects  # noqa: F401 (its laws are the catalogue)
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import specs
 from tests.independent.cramer_rao import base_motion_bound, widest_spacing

@@ -109,8 +109,8 @@ class Tried:
                 start = self.bench.fit(effects, before, near=ROUGH)
                 # What is left to gain is less than half of that lead.
                 behind = start.criterion - rival.criterion > 2.0 * demanded(self.bench) and start.cost < before.cost
-                if behind and len(start.free) > len(rival.free):
-                    return self._keep(start)
+                if (behind and len(start.free) > len(rival.free)) or (not start.done and start.cost < before.cost):
+                    return self._keep(start)  # what has run out of patience has had as much as any other
             if not before.tied:
                 trial = self._keep(self.bench.fit(effects, start))
             elif names > before.names and self.promised(before, candidate) < 1.0 and not self.bench.is_cut:
