@@ -176,3 +176,42 @@ def test_motor_driven_axis(shared):
         assert found.parameters["coulomb_ground.Tc"].value == pytest.approx(20.3935, rel=0.03)
     without = jb.fit(record, model="free", translational=True, starts=1)
     assert without.score.rms > 2 * found.score.rms
+
+
+@pytest.mark.slow
+def test_an_axis_without_a_joint_rubs_on_the_ground():
+    """Dry friction and an offset of a driven mass, by name and by value; there is no joint whose friction it could be."""
+    pytest.importorskip("numba", reason="the generator needs numba")
+    from tests.independent.generator import simulate_truth
+    from tests.independent.motions import Multisine
+    from tests.independent.rigs import Excitation, Rig
+
+    rng = np.random.default_rng(1)
+    drive = Multisine(np.array([250.0, 200.0, 150.0]), np.array([0.4, 0.9, 1.7]), rng.uniform(-np.pi, np.pi, 3))
+    hides = {"coulomb_ground": {"Tc": 20.0}, "preload": {"T0": 3.0}}
+    truth = simulate_truth(Rig(95.0, 0.0, 0.0, 200.0), hides, Excitation("multisine", force=drive), 500.0, 8.0)
+    record = jb.Record(truth["t"], {"F": truth["F"], "y": truth["y"] + 1e-5 * rng.standard_normal(truth["t"].size)})
+    found = jb.refine(record, model="free", translational=True)
+    assert found.effects == ("coulomb_ground", "preload")
+    assert found.verdict.complete
+    wanted = {"inertia": 95.0, "damping": 200.0, "coulomb_ground.Tc": 20.0, "preload.T0": 3.0}
+    for name, value in wanted.items():
+        assert found.fit.parameters[name].value == pytest.approx(value, abs=4.0 * found.fit.parameters[name].stderr)
+
+
+@pytest.mark.parametrize("sigma", [0.0, 3e-5])
+def test_an_input_as_good_as_exact_has_no_samples_to_count(sigma):
+    """Its rows leave nothing: counted as samples they made a right model look better than its noise, and the noise too large."""
+    pytest.importorskip("numba", reason="the generator needs numba")
+    from jaxbacklash.criticism.workbench import Workbench
+    from jaxbacklash.fitting.setup import base_system
+    from tests.independent.generator import make_excitation, make_rig, measure, simulate_truth
+
+    rng = np.random.default_rng(3)
+    rig = make_rig(rng)
+    truth = simulate_truth(rig, {}, make_excitation(rng, "stepped", 8.0), 500.0, 8.0)
+    seen = measure(truth, rng, sigma, 3e-5)
+    record = jb.Record(seen["t"], {"x": seen["x"], "z": seen["z"]})
+    base, free, _ = base_system(record, "joint", rig.inertia)
+    for tied in (False, True):
+        assert Workbench(record, base, free, 0.2).fit({}, tied=tied).misfit == pytest.approx(1.0, abs=0.03)

@@ -279,6 +279,20 @@ def test_a_law_with_states_waits_until_it_explains_or_nothing_else_helps(monkeyp
     assert search.best(current, {"dahl": soaking, "gravity": nibbling}, 0.25) == "dahl"
 
 
+@pytest.mark.parametrize(("misfit", "kept"), [(40.0, False), (1.2, True)])
+def test_what_no_trajectory_follows_is_no_explanation(monkeypatch, misfit, kept):
+    """Free windows begin with an internal state of their own: far from the noise that soaks up anything."""
+    search = Search(Bench())
+    search.bench.laws["lugre"] = SimpleNamespace(states=("w",), absorbs=())
+    monkeypatch.setattr("jaxbacklash.criticism.search.measures_only", lambda law: False)
+    friction = Model(frozenset({"preload"}), cost=1e5, misfit=200.0, tied=False)
+    soaking = Model(frozenset({"preload", "lugre"}), cost=1e3, misfit=misfit, tied=False)
+    steps = [Step(replace(friction, names=frozenset()), None, (), ()), Step(friction, "preload", (), ())]
+    steps[0] = replace(steps[0], trial=replace(steps[0].trial, misfit=900.0))
+    trimmed = search.trim([*steps, Step(soaking, "lugre", (), ())])
+    assert [s.added for s in trimmed] == [None, "preload", *(["lugre"] if kept else [])]
+
+
 def laws(**absorbs):
     torque = lambda self: 0.0  # noqa: E731
     return {n: SimpleNamespace(states=(), absorbs=a, slides=True, torque=torque, port="joint") for n, a in absorbs.items()}

@@ -5,6 +5,7 @@ import pytest
 
 pytest.importorskip("numba")
 
+from jaxbacklash.criticism import tuning
 from jaxbacklash.criticism.evidence import AS_WELL
 from jaxbacklash.criticism.quick_look import QuickLook
 from jaxbacklash.criticism.tuning import Tuned, apart, lead, told, tune
@@ -106,3 +107,15 @@ def test_lugre_can_find_its_way_back_from_a_static_level_below_the_sliding_one()
 
     assert rate(3.0) < rate(3.5) < rate(4.0) < rate(5.0)
     assert rate(0.0) == rate(4.0)
+
+
+@pytest.mark.parametrize("size", [1e200, np.inf, np.nan])
+def test_a_law_that_runs_away_explains_nothing_and_overflows_nothing(monkeypatch, size):
+    seen = record({})
+    base, free, _ = base_system(seen, "joint", RIG.inertia)
+    look = QuickLook(seen)
+    tangents = tuning.own_tangents
+    monkeypatch.setattr(tuning, "own_tangents", lambda *of: tuple(np.full(np.shape(v), size) for v in tangents(*of)))
+    with np.errstate(all="raise"):
+        found = tune(look, base, free, Dahl.guesses(base))
+    assert np.all(np.isfinite(found.left))

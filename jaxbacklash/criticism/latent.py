@@ -22,7 +22,7 @@ from ..errors import NoAnswer
 from ..fitting import Fit
 from ..fitting.fit import SCORE_WINDOW, prepare
 from ..fitting.setup import first_guess, free_names, make_problem
-from ..fitting.shooting import Blocks, Problem, Trajectory, Unknowns
+from ..fitting.shooting import Blocks, Problem, Trajectory, Unknowns, shoot
 from ..parameters import unit_text, values, with_values
 from ..pointwise import along
 from ..precision import require_double_precision
@@ -37,6 +37,10 @@ WIDE = np.linspace(-2.0, 4.0, 7)
 MOTION = ("y", "dy", "x", "dx", "z", "dz", "deflection")
 NARROW = np.linspace(-0.75, 0.75, 7)
 STEPS = 8
+CALMED = 5.0
+"""A misfit of more noises than this may keep the search from arriving; factor by which the noise is taken for less each time."""
+NEAR = 5e-3
+"""Half of a sum of squares, for each sample, that a search under such a noise may leave to gain."""
 EVIDENT = 6.0
 """Gain in log marginal likelihood from which a torque counts as missing: odds of 400 to 1."""
 
@@ -161,7 +165,8 @@ def _smooth(
         start.theta,
         jnp.asarray(float(hold)),
     )
-    point, found, converged = _search(smoother, Point(start, jnp.zeros((w.count, nodes))))
+    smoother, point, found, converged = _settled(smoother, start)
+    scale = float(smoother.unit)
     spread, loose, path, linear = finish(smoother, point, found.best[0].astype(int), found.best[1])
     names = list(values(system))
     vector = np.asarray(problem.base) + np.asarray(problem.directions) @ np.asarray(point.unknowns.theta)
@@ -188,7 +193,40 @@ def _nodes(samples: int) -> int:
     return min(near, key=lambda k: abs(k - wanted)) if near else wanted
 
 
-def _search(smoother: Smoother, at: Point) -> tuple[Point, Improved, bool]:
+def _settled(smoother: Smoother, start: Unknowns) -> tuple[Smoother, Point, Improved, bool]:
+    """Where the smoother ends, and under which noise.
+
+    Far beyond the noise, ties are so sharp that no step gets past a corner of friction or contact, and the parameters run away
+    with the torque. There they are held, and the noise is taken for as large as the misfit, then for smaller and smaller, as long
+    as the search arrives; the band tells by how wide it is what it was taken for.
+    """
+    none = jnp.zeros((smoother.problem.windows.count, smoother.nodes))
+    point, found, converged = _search(smoother, Point(start, none))
+    rows = float(np.sum(np.asarray(smoother.problem.windows.weight) > 0.0))
+    rms = float(np.sqrt(np.sum(np.asarray(shoot(smoother.problem, start).motion) ** 2) / max(rows, 1.0)))  # in units of the noise
+    if converged or not CALMED < rms < np.inf:
+        return smoother, point, found, converged
+    held = eqx.tree_at(lambda s: s.held, smoother, jnp.asarray(1.0))
+    calmer = _calmer(held, rms)
+    best = calmer, *_search(calmer, Point(start, none), NEAR * rows)
+    for factor in np.geomspace(rms, 1.0, 1 + round(np.ceil(np.log(rms) / np.log(CALMED))))[1:]:
+        calmer, (before, point, *_) = _calmer(held, float(factor)), best
+        then = calmer, *_search(calmer, Point(point.unknowns, point.torque * before.unit / calmer.unit), NEAR * rows)
+        if not then[-1]:
+            break
+        best = then
+    return best
+
+
+def _calmer(smoother: Smoother, factor: float) -> Smoother:
+    """The same with the noise of the measured motion, and what the ties allow, ``factor`` times as large."""
+    where = lambda s: (s.problem.windows.weight, s.problem.windows.drop, s.unit)  # noqa: E731
+    w = smoother.problem.windows
+    return eqx.tree_at(where, smoother, (w.weight / factor, w.drop / factor, smoother.unit * factor))
+
+
+def _search(smoother: Smoother, at: Point, near: float = 0.0) -> tuple[Point, Improved, bool]:
+    # Corners that a step crosses to and fro may leave ``near`` to gain.
     orders = jnp.asarray(np.repeat([1, 2], WIDE.size))
 
     def total(seen: Improved, prior: np.ndarray) -> float:
@@ -205,7 +243,7 @@ def _search(smoother: Smoother, at: Point) -> tuple[Point, Improved, bool]:
                 # The step was too long for the corners it crossed: go half of the way.
                 at = _middle(before[0], at)
                 continue
-            if abs(gain) < 0.05 + 1e-4 * abs(total(seen, prior)):
+            if abs(gain) < 0.05 + near + 1e-4 * abs(total(seen, prior)):
                 return at, seen, True
         if not np.isfinite(float(seen.cost)):
             raise NoAnswer("the missing torque could not be found: the model's motion grows without bound")

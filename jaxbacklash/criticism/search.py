@@ -92,14 +92,16 @@ class Search(Unseen):
         """The path without its last additions where they only nibble at a misfit that nothing explains.
 
         A clear rest is a sign that something else is at work, and what takes away a small part of it stands in for that; the
-        measuring chain, which can imitate nearly anything a little, has to take away most of it.
+        measuring chain, which can imitate nearly anything a little, has to take away most of it. A law with internal states that
+        free windows start anew, and no trajectory can follow, soaks up what is missing, whatever that is.
         """
         steps = list(steps)
         while len(steps) > 1 and excess(steps[-1].trial) > UNEXPLAINED:
-            added = steps[-1].added
+            law = self.bench.laws.get(steps[-1].added or "")
             before, after = (excess(t) for t in self.alike(steps[-2].trial, steps[-1].trial))
-            least = MOST if added is not None and measures_only(self.bench.laws[added]) else LITTLE
-            if before - after > least * before:
+            least = MOST if law is not None and measures_only(law) else LITTLE
+            soaks = law is not None and law.states and not adequate(steps[-1].trial) and not self.bench.outright
+            if before - after > least * before and not soaks:
                 break
             steps.pop()
         return steps

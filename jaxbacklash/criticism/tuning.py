@@ -21,6 +21,8 @@ from .quick_look import QuickLook, whitener
 
 ROUNDS, EVALUATIONS = 2, 8
 """Times the joint is moved, and evaluations of the law between."""
+LOST = 1e30
+"""A torque of this size is that of a law that cannot be followed along the motion: its powers would overflow."""
 Rival = tuple[list[AbstractEffect], int]
 """Effects whose torques, each at any strength, are to explain what is missing, and how many parameters that takes."""
 REACH = np.log(30.0)
@@ -161,7 +163,7 @@ def _round(
             seeds = np.zeros((len(index), full.size))
             seeds[np.arange(len(index)), index] = chain
             # What cannot be followed explains nothing.
-            torque, columns = (np.nan_to_num(v, posinf=0.0, neginf=0.0) for v in own_tangents(law, system, seeds, look.motion))
+            torque, columns = (np.where(np.abs(v) < LOST, v, 0.0) for v in own_tangents(law, system, seeds, look.motion))
             seen[p.tobytes()] = project(look.average(torque)) - target, project(look.average(columns).T)
         return seen[p.tobytes()]
 

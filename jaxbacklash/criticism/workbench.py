@@ -304,9 +304,11 @@ def applicable(law: type[AbstractEffect], base: System) -> bool:
     """Whether a law can act at all in a joint like this one: laws of the contact need a play or a spring.
 
     Where the transmitted force is measured, friction that sticks in the joint is no function of the motion, and the gain of
-    the force sensor is one with the size of everything.
+    the force sensor is one with the size of everything. An axis without a joint rubs on the ground alone.
     """
     if base.observed == "T" and ((law.slides and law.port == "joint") or canonical_name(law) == "sensor_gain"):
+        return False
+    if base.contact is None and canonical_name(law) == "coulomb_joint":
         return False
     return not (base.contact is None and getattr(law, "needs_contact", False))
 

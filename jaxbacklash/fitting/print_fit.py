@@ -44,9 +44,11 @@ def text(fit: Fit) -> str:
     lines = []
     for record, score, noise, moved in zip(fit.records, fit.scores, fit.noise, fit.input_noise):
         lines.append(record.summary())
-        unit = channel_unit("x", translational=fit.translational)
+        driver = record.input_name or "x"
+        unit = channel_unit(driver, translational=fit.translational)
         own = channel_unit(record.observed_name, translational=fit.translational)
-        lines.append(f"  noise of {record.observed_name} {noise:.3g} {own}" + (f", of x {moved:.3g} {unit}" if moved else ""))
+        beside = f", of {driver} {moved:.3g} {unit}" if moved else ""
+        lines.append(f"  noise of {record.observed_name} {noise:.3g} {own}{beside}")
         lines.append(
             f"  prediction error over windows: {score.rms:.3g} times the noise (median window {score.median:.3g})"
         )

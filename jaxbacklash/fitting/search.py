@@ -202,12 +202,15 @@ def _tied(problem: Problem, unknowns: Unknowns, soon: int, limit: int) -> Minimu
 
 
 def freedom(unknowns: Unknowns, windows: Windows, *, tied: bool = False) -> float:
-    """Samples less the unknowns: each window's own spline coefficients and, unless it is tied to the one before, its start."""
+    """Samples less the unknowns: each window's own spline coefficients and, unless it is tied to the one before, its start.
+
+    An input as good as exact has no noise to show: neither its samples nor what its spline takes of them count.
+    """
     samples = float(np.sum(np.asarray(windows.weight) > 0.0))
     moving = float(np.sum(np.asarray(windows.input_weight) > 0.0))
     used = float(np.sum(np.any(np.asarray(windows.weight) > 0.0, axis=1)))
     starts = used - (float(np.sum(np.asarray(windows.tie))) if tied else 0.0)
-    return samples + moving - used * windows.intervals - starts * unknowns.starts.shape[0]
+    return samples + float(windows.told) * (moving - used * windows.intervals) - starts * unknowns.starts.shape[0]
 
 
 def inverse_information(schur: np.ndarray) -> np.ndarray:

@@ -38,7 +38,8 @@ class Windows(eqx.Module):
     ``force`` (W, P+1) exact force at panel edges; ``coefficients`` (W, m) start of the spline; ``basis`` (6, P+1, m+5)
     the splines and their derivatives at panel edges; ``starts`` (2, W) position and speed of the link from the smoothed data;
     ``drop`` (2,) how sharply ends tie to starts [1/rad, s/rad]; ``used`` how many windows, the first ones, hold
-    data; ``by_force`` True when the spline is of the force.
+    data; ``told`` () how much of the variance that ``input_weight`` stands for the input shows, 1 but for one as good as exact,
+    which is given a little noise; ``by_force`` True when the spline is of the force.
     """
 
     t0: Array
@@ -54,6 +55,7 @@ class Windows(eqx.Module):
     drop: Array
     panel: Array
     used: Array
+    told: Array
     every: int = eqx.field(static=True)
     by_force: bool = eqx.field(static=True)
 
@@ -134,7 +136,7 @@ def cut(
     total = bucket(sum(p["measured"].shape[0] for p in parts))
     stacked: dict[str, np.ndarray] = {}
     for key in parts[0]:
-        if key in ("noise", "input_noise"):
+        if key in ("noise", "input_noise", "told"):
             continue
         joined = np.concatenate([p[key] for p in parts])
         stacked[key] = np.pad(joined, [(0, total - joined.shape[0])] + [(0, 0)] * (joined.ndim - 1))
@@ -145,7 +147,7 @@ def cut(
     panel = dt / every
     windows = Windows(
         basis=_basis(length, every, intervals, panel), drop=drop, panel=np.asarray(panel), every=every, starts=starts,
-        used=np.asarray(sum(counts)), by_force=driver == "F", **stacked,
+        used=np.asarray(sum(counts)), told=np.mean([p["told"] for p in parts]), by_force=driver == "F", **stacked,
     )  # fmt: skip
     layout = Layout(
         first=tuple(int(v) for v in np.cumsum([0, *counts[:-1]])),
@@ -195,6 +197,7 @@ def _cut_one(record: Record, length: int, every: int, intervals: int, driver: st
         "tie": np.concatenate([np.ones(count - 1), np.zeros(2)]),
         "noise": noise,
         "input_noise": 0.0,
+        "told": 1.0,
     }
     motion = np.zeros(samples)
     part["input"] = part["input_weight"] = np.zeros((rows, length if driver else 0))
@@ -203,6 +206,7 @@ def _cut_one(record: Record, length: int, every: int, intervals: int, driver: st
         values = record.channels[driver]
         fitted = fit_spline(record.t, values, record.t[0], length * dt / intervals)
         part["input_noise"] = max(fitted.noise, NEGLIGIBLE * float(np.std(values)))
+        part["told"] = (fitted.noise / part["input_noise"]) ** 2 if part["input_noise"] > 0.0 else 1.0
         part["input"] = _rows(values, rows, length)
         part["input_weight"] = _rows(np.full(samples, 1.0 / part["input_noise"]), rows, length)
         part["coefficients"] = _rows(fitted.coefficients, rows, intervals)
