@@ -123,7 +123,10 @@ def _sentence(d: Dependence, surface: Surface, found: dict[tuple[str, str], Depe
         return ""
     way = "rises" if d.trend > 0 else "falls"
     if abs(d.trend) < 0.3:
-        return f"It depends on the {name}."
+        peak = int(np.argmax(np.abs(d.mean)))
+        at = float(np.mean(d.edges[peak : peak + 2]))
+        mean = f"{d.mean[peak]:.3g} {unit}"
+        return f"It neither rises nor falls with the {name}: on average it is largest, {mean}, near {at:.3g} {d.unit}."
     return f"It {way} with the {name}: on average {d.mean[0]:.3g} {unit} at {low}, {d.mean[-1]:.3g} at {high}."
 
 

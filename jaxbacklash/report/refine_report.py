@@ -13,6 +13,8 @@ from .figures import candidate_ranking, error_by_stage, to_svg
 from .fit_report import pictures, series
 from .html import Panel, write_report
 
+STRONG = 10.0
+"""Evidence from which an effect would be added to a model that leaves little else."""
 TELLING = 0.1
 """Share of the missing torque that coordinates must explain before its picture over them is worth looking at."""
 
@@ -71,7 +73,10 @@ def _rankings(stages: list[dict[str, Any]], complete: bool) -> list[Panel]:
                 "Evidence allows for the parameters an effect brings: above 10 is strong, below 0 speaks against it."
             )
         else:
-            sentence = f"What one more effect would bring to {have}: no evidence is strong enough to add any."
+            why = "no evidence is strong enough to add any"
+            if max(c["evidence"] or 0.0 for c in stage["candidates"]) > STRONG:
+                why = "none takes away enough of so large a misfit to explain it"
+            sentence = f"What one more effect would bring to {have}: {why}."
         drawn = candidate_ranking(stage["candidates"], current=stage["rms_over_noise"])
         panels.append(ranking_panel(f"What is missing in {have}?", sentence, drawn, number))
     return panels
