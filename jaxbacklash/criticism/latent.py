@@ -202,10 +202,12 @@ def _settled(smoother: Smoother, start: Unknowns) -> tuple[Smoother, Point, Impr
     """
     none = jnp.zeros((smoother.problem.windows.count, smoother.nodes))
     point, found, converged = _search(smoother, Point(start, none))
+    if converged:
+        return smoother, point, found, True
     rows = float(np.sum(np.asarray(smoother.problem.windows.weight) > 0.0))
     rms = float(np.sqrt(np.sum(np.asarray(shoot(smoother.problem, start).motion) ** 2) / max(rows, 1.0)))  # in units of the noise
-    if converged or not CALMED < rms < np.inf:
-        return smoother, point, found, converged
+    if not CALMED < rms < np.inf:
+        return smoother, point, found, False
     held = eqx.tree_at(lambda s: s.held, smoother, jnp.asarray(1.0))
     calmer = _calmer(held, rms)
     best = calmer, *_search(calmer, Point(start, none), NEAR * rows)
@@ -219,10 +221,9 @@ def _settled(smoother: Smoother, start: Unknowns) -> tuple[Smoother, Point, Impr
 
 
 def _calmer(smoother: Smoother, factor: float) -> Smoother:
-    """The same with the noise of the measured motion, and what the ties allow, ``factor`` times as large."""
-    where = lambda s: (s.problem.windows.weight, s.problem.windows.drop, s.unit)  # noqa: E731
-    w = smoother.problem.windows
-    return eqx.tree_at(where, smoother, (w.weight / factor, w.drop / factor, smoother.unit * factor))
+    """The same under so many times the noise, its torque in a unit as much larger."""
+    windows = smoother.problem.windows.noisier(factor)
+    return eqx.tree_at(lambda s: (s.problem.windows, s.unit), smoother, (windows, smoother.unit * factor))
 
 
 def _search(smoother: Smoother, at: Point, near: float = 0.0) -> tuple[Point, Improved, bool]:

@@ -235,10 +235,9 @@ class Workbench:
 
     def quieter(self, factor: float) -> None:
         """Take the noise of the measured channel to be ``factor`` times what it was taken for."""
-        w, layout = self.windows, self.layout
         self.noise_factor *= factor
-        self.windows = eqx.tree_at(lambda w: (w.weight, w.drop), w, (np.asarray(w.weight) / factor, np.asarray(w.drop) / factor))
-        self.layout = replace(layout, noise=tuple(factor * n for n in layout.noise))
+        self.windows = self.windows.noisier(factor)
+        self.layout = replace(self.layout, noise=tuple(factor * n for n in self.layout.noise))
 
     def cut(self, ties: np.ndarray) -> None:
         """Tie only those windows from now on that have a one in ``ties`` (W,); ``self.ties`` keeps what was tied before."""

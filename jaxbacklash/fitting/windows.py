@@ -71,6 +71,10 @@ class Windows(eqx.Module):
     def intervals(self) -> int:
         return self.coefficients.shape[1]
 
+    def noisier(self, factor: float) -> Windows:
+        """The same with the noise of the measured channel, and what the ties allow, ``factor`` times as large."""
+        return eqx.tree_at(lambda w: (w.weight, w.drop), self, (np.asarray(self.weight) / factor, np.asarray(self.drop) / factor))
+
 
 class Layout(eqx.Module):
     """Where each record sits among the windows, and what its noise is; plain numbers for reports."""
