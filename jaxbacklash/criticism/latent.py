@@ -22,13 +22,13 @@ from ..errors import NoAnswer
 from ..fitting import Fit
 from ..fitting.fit import SCORE_WINDOW, prepare
 from ..fitting.setup import first_guess, free_names, make_problem
-from ..fitting.shooting import Blocks, Problem, Trajectory, Unknowns, shoot
+from ..fitting.shooting import Blocks, Problem, Trajectory, Unknowns
 from ..parameters import unit_text, values, with_values
 from ..pointwise import along
 from ..precision import require_double_precision
 from ..records import Record
 from ..system import System
-from .smoother import Improved, Point, Smoother, finish, improve, make_hats
+from .smoother import Improved, Point, Smoother, finish, improve, make_hats, misfit
 
 NODES = 10
 """Values of the torque per shooting window of 0.1 s, where the rate allows: as fast as the data can tell."""
@@ -36,7 +36,8 @@ WIDE = np.linspace(-2.0, 4.0, 7)
 """Sizes of the torque's steps tried first, powers of ten of the torque that the noise of one window would hide."""
 MOTION = ("y", "dy", "x", "dx", "z", "dz", "deflection")
 NARROW = np.linspace(-0.75, 0.75, 7)
-STEPS = 8
+STEPS, SOON, FALLEN = 8, 3, 0.1
+"""Steps of a search at most, and those after which it must have come down to this share of where it began."""
 CALMED = 5.0
 """A misfit of more noises than this may keep the search from arriving; factor by which the noise is taken for less each time."""
 NEAR = 5e-3
@@ -201,11 +202,11 @@ def _settled(smoother: Smoother, start: Unknowns) -> tuple[Smoother, Point, Impr
     as the search arrives; the band tells by how wide it is what it was taken for.
     """
     none = jnp.zeros((smoother.problem.windows.count, smoother.nodes))
-    point, found, converged = _search(smoother, Point(start, none))
+    rows = float(np.sum(np.asarray(smoother.problem.windows.weight) > 0.0))
+    point, found, converged = _search(smoother, Point(start, none), hopeless=0.5 * CALMED**2 * rows)
     if converged:
         return smoother, point, found, True
-    rows = float(np.sum(np.asarray(smoother.problem.windows.weight) > 0.0))
-    rms = float(np.sqrt(np.sum(np.asarray(shoot(smoother.problem, start).motion) ** 2) / max(rows, 1.0)))  # in units of the noise
+    rms = float(misfit(smoother.problem, start))
     if not CALMED < rms < np.inf:
         return smoother, point, found, False
     held = eqx.tree_at(lambda s: s.held, smoother, jnp.asarray(1.0))
@@ -226,8 +227,10 @@ def _calmer(smoother: Smoother, factor: float) -> Smoother:
     return eqx.tree_at(lambda s: (s.problem.windows, s.unit), smoother, (windows, smoother.unit * factor))
 
 
-def _search(smoother: Smoother, at: Point, near: float = 0.0) -> tuple[Point, Improved, bool]:
-    # Corners that a step crosses to and fro may leave ``near`` to gain.
+def _search(
+    smoother: Smoother, at: Point, near: float = 0.0, hopeless: float = np.inf
+) -> tuple[Point, Improved, bool]:  # fmt: skip
+    # Corners that a step crosses to and fro may leave ``near`` to gain; above ``hopeless`` a search that does not fall ends soon.
     orders = jnp.asarray(np.repeat([1, 2], WIDE.size))
 
     def total(seen: Improved, prior: np.ndarray) -> float:
@@ -235,8 +238,12 @@ def _search(smoother: Smoother, at: Point, near: float = 0.0) -> tuple[Point, Im
 
     sizes = np.tile(WIDE, 2)
     before: tuple[Point, Improved] | None = None
-    for _ in range(STEPS):
+    first = np.inf
+    for step in range(STEPS):
         seen = improve(smoother, at, orders, jnp.asarray(-2.0 * np.log(10.0) * sizes))
+        first = min(first, float(seen.cost)) if step == 0 else first
+        if step >= SOON and float(seen.cost) > max(hopeless, FALLEN * first):
+            break
         if before is not None:
             prior = np.asarray(before[1].best)
             gain = total(before[1], prior) - total(seen, prior)

@@ -28,6 +28,7 @@ from ..fitting.shooting import (
     local_coefficients,
     predict,
     residuals,
+    shoot,
     tie_weights,
     trajectory,
 )
@@ -264,6 +265,13 @@ def improve(s: Smoother, at: Point, orders: Array, log_precisions: Array) -> Imp
     best = jnp.stack([orders[index].astype(float), log_precisions[index]])
     point = Point(moved, at.torque + local[:, in_torque[:nodes]])
     return Improved(point, best, told, without, linear.cost, rough)
+
+
+@kept_jit
+def misfit(problem: Problem, unknowns: Unknowns) -> Array:
+    """Root mean square of what a trajectory leaves of the measured channel, in units of the noise."""
+    rows = jnp.sum(problem.windows.weight > 0.0)
+    return jnp.sqrt(jnp.sum(shoot(problem, unknowns).motion ** 2) / jnp.maximum(rows, 1))
 
 
 @kept_jit
