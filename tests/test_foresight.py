@@ -20,11 +20,25 @@ def test_friction_is_foreseen_where_it_is(effect, expected):
     record, rig, _, _ = hidden(effect, "chirp", 3, 8.0)
     base, free, _ = base_system(record, "joint", rig.inertia)
     bench = Workbench(record, base, free, 0.2)
-    assert Foresight(bench).friction(SimpleNamespace(system=base, free=free)) == expected
+    assert Foresight(bench).friction(SimpleNamespace(system=base, free=free))[0] == expected
+
+
+GIVING = [("coulomb_joint", None), ("stribeck", None), ("dahl", ["dahl"]), ("lugre", ["dahl"])]
+
+
+@pytest.mark.parametrize(("effect", "expected"), GIVING)
+def test_friction_that_gives_is_foreseen_where_it_is(effect, expected):
+    record, rig, _, _ = hidden(effect, "chirp", 3, 8.0)
+    base, free, _ = base_system(record, "joint", rig.inertia)
+    bench = Workbench(record, base, free, 0.2)
+    ahead, alone = Foresight(bench), SimpleNamespace(system=base, free=free)
+    found = ahead.giving(alone, ahead.friction(alone)[1])
+    assert (found if found is None else list(found)) == expected
 
 
 @pytest.mark.slow
-def test_a_search_with_dry_friction_finds_its_programs_in_the_making(cache, monkeypatch):
+@pytest.mark.parametrize("effect", ["coulomb_joint", "dahl"])
+def test_a_search_with_friction_finds_its_programs_in_the_making(cache, monkeypatch, effect):
     """The catalogue's program and that of friction are begun beside the search; the joint's own is needed at once."""
     levenberg._minimise.programs.clear()
     begun, find = [], compiled._find
@@ -35,9 +49,9 @@ def test_a_search_with_dry_friction_finds_its_programs_in_the_making(cache, monk
         return find(function, *rest)
 
     monkeypatch.setattr(compiled, "_find", noted)
-    record, rig, _, _ = hidden("coulomb_joint", "chirp", 3, 8.0)
+    record, rig, _, _ = hidden(effect, "chirp", 3, 8.0)
     found = refine(record, inertia=rig.inertia)
-    assert found.effects == ("coulomb_joint",)
+    assert found.effects == (effect,)
     assert begun.count(False) == 2
 
 

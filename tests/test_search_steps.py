@@ -8,7 +8,7 @@ import pytest
 
 from jaxbacklash.criticism.candidates import _gain
 from jaxbacklash.criticism.search import Search, Step
-from jaxbacklash.criticism.tried import SLIGHT
+from jaxbacklash.criticism.tried import BARELY, SLIGHT
 from jaxbacklash.effects import CoulombJoint, Gravity, Stribeck
 
 from .number_models import Model
@@ -52,6 +52,20 @@ def test_a_larger_model_that_fits_worse_begins_again_near_the_smaller_one(monkey
     candidate = SimpleNamespace(name="gravity", effect=Gravity(G=20.0))
     assert search.add(before, candidate).cost == min(costs)
     assert begun == pytest.approx([20.0, 20.0 * SLIGHT][: len(costs)])
+
+
+def test_what_promises_little_beside_one_trajectory_begins_where_that_has_arrived(monkeypatch):
+    before, both = Model(frozenset({"preload"}), cost=100.0), frozenset({"preload", "gravity"})
+    search, begun = Search(Bench()), []
+
+    def fit(effects, *_, tied, **__):
+        begun.append((float(effects["gravity"].G), tied))
+        return Model(both, cost=99.9)
+
+    monkeypatch.setattr(search.bench, "fit", fit)
+    monkeypatch.setattr(search, "promised", lambda *_, **__: 0.7)
+    assert search.add(before, SimpleNamespace(name="gravity", effect=Gravity(G=20.0))).cost == 99.9
+    assert begun == [(pytest.approx(20.0 * BARELY), True)]
 
 
 def test_of_those_that_promise_as_much_the_simplest_is_fitted_first():
@@ -262,6 +276,23 @@ def test_what_fell_behind_on_free_windows_is_not_tied(monkeypatch):
     assert not search.ruled_out(final, rival)
     search.known[rival, False] = Model(rival, cost=90.5, tied=False)
     assert not search.ruled_out(final, rival)
+
+
+@pytest.mark.parametrize(("behind", "misfit", "given_up"), [(20.0, 1.0, True), (1.0, 1.0, False), (20.0, 2.0, False)])
+def test_a_richer_law_clearly_behind_a_simpler_one_that_explains_is_not_fitted_on(monkeypatch, behind, misfit, given_up):
+    monkeypatch.setattr("jaxbacklash.criticism.tried.gain", lambda before, after: before.criterion - after.criterion)
+    monkeypatch.setattr("jaxbacklash.criticism.search.gain", lambda before, after: before.criterion - after.criterion)
+    plain = Model(frozenset({"coulomb_joint"}), cost=100.0, tied=False, done=False, misfit=misfit)
+    rich = Model(frozenset({"stribeck"}), cost=100.0 + 0.5 * behind, tied=False, done=False, misfit=misfit)
+    search, finished = Search(Bench()), []
+    search.bench.laws = laws(stribeck=("coulomb_joint",), coulomb_joint=())
+    monkeypatch.setattr(search, "unstuck", lambda before, tried: tried)
+    monkeypatch.setattr(search, "finish", lambda trial: finished.append(min(trial.names)) or trial)
+    search.finished(Model(frozenset(), cost=1e4, tied=False), {"coulomb_joint": plain, "stribeck": rich})
+    assert sorted(finished) == ([] if given_up else ["coulomb_joint", "stribeck"])
+    # Where its simpler law is kept, one trajectory of the richer one is not asked for.
+    search.known = {(plain.names, False): plain, (rich.names, False): rich}
+    assert search.ruled_out(replace(plain, tied=True), rich.names) == given_up
 
 
 def test_a_law_with_states_waits_until_it_explains_or_nothing_else_helps(monkeypatch):

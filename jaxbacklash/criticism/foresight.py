@@ -1,7 +1,8 @@
 """What a search will most likely ask the compiler for next, compiled beside it. It changes nothing but the time a cold run takes.
 
 A search waits for one program after the other while the compiler keeps a single core busy. The joint alone is fitted while the
-catalogue's program is in the making; what the joint leaves tells then whether dry friction will want a program of its own.
+catalogue's program is in the making; what the joint leaves tells then whether dry friction, or friction that gives, will want a
+program of its own.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 from concurrent.futures import ThreadPoolExecutor
 from types import TracebackType
 
-from ..fitting.levenberg import Levenberg, fetch, ready
+from ..fitting.levenberg import Levenberg, ready
 from ..fitting.setup import first_guess
 from ..fitting.shooting import Problem
 from ..mechanics import AbstractEffect
@@ -43,19 +44,20 @@ class Foresight:
 
     def after(self, base: Trial) -> None:
         """Go on from what the joint alone leaves."""
-        law = self.friction(base)
+        law, share = self.friction(base)
         if law is not None:
-            self.aside.submit(self.sliding, base, law)
+            giving = self.giving(base, share)
+            self.aside.submit(*((self.sliding, base, law) if giving is None else (self.remembering, giving, base.system)))
         self.aside.submit(self.looks, base, law)
 
     def member(self, law: Member) -> None:
-        """Read the program of a model with a law that has a memory, if it is kept: it is the largest of all, and too dear to
-        compile on a first sight of the law."""
-        self.aside.submit(self._fetch, {**law.beside, law.name: law.tuned.effect}, law.tuned.system)
+        """The program of a model with a law that has a memory and will be tried next: it is the largest of all."""
+        self.aside.submit(self.remembering, {**law.beside, law.name: law.tuned.effect}, law.tuned.system)
 
-    def _fetch(self, effects: dict[str, AbstractEffect], joint: System) -> None:
+    def remembering(self, effects: dict[str, AbstractEffect], joint: System) -> None:
+        """The program of a model with these effects, while its kin are still tuned."""
         problem, _ = self.bench.problem(effects, joint)
-        fetch(problem, first_guess(problem), Levenberg())
+        ready(problem, first_guess(problem), Levenberg())
 
     def catalogue(self) -> None:
         """The catalogue's program, which every search needs after that of the joint alone."""
@@ -63,8 +65,9 @@ class Foresight:
         problem, _ = self.bench.problem({}, self.bench.base, extra=[f"{name}.{n}" for n in strengths(self.bench.static[name]())])
         ready(problem, first_guess(problem), Levenberg())
 
-    def friction(self, base: Trial) -> str | None:
-        """The simplest dry friction in the port where a quick look at what the joint leaves makes it likely."""
+    def friction(self, base: Trial) -> tuple[str | None, float]:
+        """The simplest dry friction in the port where a quick look at what the joint leaves makes it likely, and the share of
+        that which it takes away."""
         dry = {name: law for name, law in self.bench.static.items() if law.slides}
         simplest: dict[str, str] = {}
         for name in sorted(dry, key=lambda n: len(strengths(dry[n]()))):
@@ -74,7 +77,18 @@ class Foresight:
             rubbing, _ = apart(dry[name](), strengths(dry[name]()))
             shares[name] = self.bench.quick.share(base.system, base.free, rubbing)
         likeliest = max(shares, key=lambda n: shares[n], default="")
-        return likeliest if shares.get(likeliest, 0.0) > CLEARLY else None
+        share = shares.get(likeliest, 0.0)
+        return (likeliest if share > CLEARLY else None), share
+
+    def giving(self, base: Trial, share: float) -> dict[str, AbstractEffect] | None:
+        """The simplest law of friction that gives before it slips, by name, where a mere guess of it takes away more than that
+        share already; friction that does not give leaves such guesses far behind."""
+        quick, bare = self.bench.quick, base.system
+        for name in (names[0] for names in families(self.bench).values()):
+            guesses = self.bench.laws[name].guesses(bare, quick.motion)
+            if quick.share(bare, base.free, guesses) > share:
+                return {name: quick.choose(bare, base.free, guesses)[0]}
+        return None
 
     def sliding(self, base: Trial, name: str) -> None:
         """The catalogue's program with dry friction that can hold."""

@@ -428,6 +428,7 @@ class Search(Unseen):
         tried = self.unstuck(current, tried)
         lowest = min((t.criterion for t in tried.values()), default=0.0)
         close = [n for n, t in tried.items() if t.criterion - lowest <= (1.0 - CLOSE) * (current.criterion - lowest)]
+        close = [n for n in close if not self.outdone(n, tried)]
         undecided = len(close) > 1
         return {n: self.shaken(t if t.done else self.finish(t)) if undecided and n in close else t for n, t in tried.items()}
 

@@ -16,8 +16,9 @@ from .workbench import PATIENCE, Trial, Workbench, adequate, strengths
 
 STUCK = 1.01
 """A tied fit that misses by so much more than its free windows has stuck, or their freedom hides what the model lacks."""
-SLIGHT = 0.03
-"""Share of its predicted strength at which an effect begins where from the whole of it the fit has stuck."""
+SLIGHT, BARELY = 0.03, 1e-4
+"""Share of its predicted strength at which an effect begins where from the whole of it the fit has stuck, and where it promises
+little beside one trajectory, which so much does not bend."""
 ROUGH = 1.0
 """How much of half the sum of squares may be left to gain by a model that can hardly be chosen."""
 LOOSER = 1.0
@@ -41,6 +42,7 @@ class Tried:
         self.known: dict[tuple[frozenset[str], bool], Trial] = {}
         self.asked: set[frozenset[str]] = set()  # models that were to be tied with cuts
         self.shook: set[frozenset[str]] = set()  # models whose dry friction was softened for a while
+        self.behind: set[frozenset[str]] = set()  # models not fitted on, as a simpler law is ahead on free windows
         self.apart = False  # windows are left free, and laws with states out of it
 
     def settle(self, trial: Trial) -> Trial:
@@ -114,14 +116,14 @@ class Tried:
             if not before.tied:
                 trial = self._keep(self.bench.fit(effects, start))
             elif names > before.names and self.promised(before, candidate) < 1.0 and not self.bench.is_cut:
-                # One search is enough: if the model before has stuck, an addition that does nothing else may bring it on.
-                return self._keep(self.bench.fit(effects, before, tied=True))
+                # One search is enough, from where the model before has arrived: if that has stuck, an addition that does nothing
+                # else may bring it on.
+                return self._keep(self.bench.fit({**present, candidate.name: _weaker(effect, BARELY)}, before, tied=True))
             else:
                 trial = self._keep(self.joined(effects, before))
             if trial.cost > before.cost and names > before.names:
                 # The larger model holds the smaller one: it has stuck on the way from the strength that was predicted.
-                slight = with_values(effect, {n: SLIGHT * values(effect)[n] for n in strengths(effect)})
-                self._keep(self.bench.fit({**present, candidate.name: slight}, before, tied=before.tied))
+                self._keep(self.bench.fit({**present, candidate.name: _weaker(effect, SLIGHT)}, before, tied=before.tied))
         return self.known[key]
 
     def promised(self, before: Trial, candidate: Candidate, *, counted: bool = True) -> float:
@@ -260,10 +262,19 @@ class Tried:
             return self._keep(self.bench.fit(effects, final, tied=False, patience=WHOLE))
         return trial
 
+    def outdone(self, name: str, tried: dict[str, Trial]) -> bool:
+        """Whether a candidate is clearly behind a simpler law that it contains, which explains and has had no more patience."""
+        own = tried[name]
+        simpler = [tried[n] for n in self.bench.laws[name].absorbs if n in tried]
+        ahead = [t for t in simpler if explained(t) and t.tied == own.tied and gain(own, t) > demanded(self.bench)]
+        if ahead and not own.tied:
+            self.behind.add(own.names)
+        return bool(ahead)
+
     def ruled_out(self, final: Trial, names: frozenset[str]) -> bool:
         """Whether a model fell behind another on free windows already: tying them gives it nothing that it lacks there."""
         own, other = self.known.get((final.names, False)), self.known.get((names, False))
-        if own is None or other is None or not other.done:
+        if own is None or other is None or not (other.done or names in self.behind):
             return False
         return gain(other, own) > demanded(self.bench)
 
@@ -298,3 +309,8 @@ class Tried:
         if known is None or (trial.criterion, not trial.done) < (known.criterion, not known.done):
             self.known[key] = trial
         return self.known[key]
+
+
+def _weaker(effect: AbstractEffect, share: float) -> AbstractEffect:
+    """The effect with a share of its strengths."""
+    return with_values(effect, {n: share * values(effect)[n] for n in strengths(effect)})

@@ -26,6 +26,8 @@ LOOKED = 3
 """Torques, the likeliest by the quick look, that are held against the trajectory."""
 BY_CHANCE = 8.0
 """What the quick look shows of a torque by chance where nothing is missing, at most: less is not held against the trajectory."""
+NOWHERE_NEAR = 0.3
+"""Share of what it would have to bring under which a torque is not looked at more closely."""
 FURTHEST = 3.0
 """Size, as a multiple of what the quick look says, up to which a torque is applied."""
 ALIKE = 0.01
@@ -78,19 +80,25 @@ def unnamed(bench: Workbench, trial: Trial) -> Unnamed | None:
         def rise(share: float, torque: np.ndarray = torque) -> float:
             return answered(eqx.tree_at(lambda p: p.windows.force, problem, applied + share * torque), unknowns)[0] - still
 
-        fall = 2.0 * best_fall(rise) / (max(1.0, trial.misfit**2) * trial.correlation)
-        if fall > seen.chance + SURE * demanded(bench):
+        unit = 0.5 * max(1.0, trial.misfit**2) * trial.correlation
+        bar = seen.chance + SURE * demanded(bench)
+        fall = best_fall(rise, bar * unit) / unit
+        if fall > bar:
             found.append(Unnamed(seen.words, fall))
     return max(found, key=lambda one: one.fall, default=None)
 
 
-def best_fall(rise: Callable[[float], float]) -> float:
-    """The largest fall of a cost over sizes of a torque; ``rise`` tells how far the cost rises with one."""
+def best_fall(rise: Callable[[float], float], bar: float = 0.0) -> float:
+    """The largest fall of a cost over sizes of a torque; ``rise`` tells how far the cost rises with one. What is far from falling
+    by ``bar`` is not looked at more closely."""
     once, twice = rise(1.0), rise(2.0)
     slope, curvature = parabola(once, twice, 1.0)
     best = -slope / curvature if np.isfinite(curvature) and curvature > 0.0 else 0.0
+    seen = -min(once, twice)
+    if max(seen, -0.5 * slope * best) < NOWHERE_NEAR * bar:
+        return seen
     # What the parabola says of its own lowest point is not believed but tried: corners bend it.
-    return -min(once, twice, rise(float(np.clip(best, -FURTHEST, FURTHEST))))
+    return max(seen, -rise(float(np.clip(best, -FURTHEST, FURTHEST))))
 
 
 def glimpses(bench: Workbench, trial: Trial, own: QuickLook) -> list[Glimpse]:

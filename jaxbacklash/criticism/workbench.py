@@ -34,6 +34,8 @@ COLUMNS = 10
 """Free parameters in steps of this many, so that adding one compiles nothing."""
 PATIENCE = 25
 """Linearisations spent on a model before it is compared with others; the one that is kept is finished."""
+COMPARED = 1e-2
+"""How near to the minimum one trajectory comes, as `Levenberg.atol`: no parameter is off by 15 % of its standard error."""
 ENOUGH = 3e-3
 """A model that is clearly wrong is not fitted on when a step promises less than this share of its misfit."""
 
@@ -188,11 +190,11 @@ class Workbench:
             unknowns = Unknowns(unknowns.theta, self._followed(effects, begin, unknowns.starts), unknowns.coefficients)
         self.fits += 1
         if tied:
-            problem, solution, _ = tie_windows(problem, unknowns, TIES[0], limit=patience)
+            problem, solution, _ = tie_windows(problem, unknowns, TIES[0], limit=patience, near=COMPARED)
             if patience > PATIENCE and 2.0 * float(solution.stats["cost"]) > ADEQUATE**2 * freedom(
                 solution.value, self.windows, tied=True
             ):
-                problem, solution, _ = tie_windows(problem, unknowns, TIES[1], limit=patience)
+                problem, solution, _ = tie_windows(problem, unknowns, TIES[1], limit=patience, near=COMPARED)
         else:
             solution = minimise(problem, unknowns, Levenberg(limit=patience, atol=near, rtol=ENOUGH))
         return self._trial(problem, solution, frozenset(effects), free, tied, patience)
@@ -204,7 +206,8 @@ class Workbench:
         problem, free = self.problem(effects, trial.system)
         still = Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
         self.fits += 1
-        problem, solution, _ = tie_windows(problem, through_softened(problem, still, sliding, way), TIES[0], limit=patience)
+        begin = through_softened(problem, still, sliding, way)
+        problem, solution, _ = tie_windows(problem, begin, TIES[0], limit=patience, near=COMPARED)
         return self._trial(problem, solution, trial.names, free, True, patience)
 
     def _followed(self, effects: dict[str, AbstractEffect], joint: System, starts: np.ndarray) -> np.ndarray:
@@ -217,7 +220,7 @@ class Workbench:
         unknowns, seen, steps = search_held(problem, np.zeros(problem.directions.shape[1]), limit=patience)
         count = freedom(unknowns, self.windows, tied=True)
         if np.sqrt(2.0 * float(seen["cost"]) / count) < LOOSE:
-            _, solution, taken = tie_windows(problem, unknowns, TIES[0], limit=patience)
+            _, solution, taken = tie_windows(problem, unknowns, TIES[0], limit=patience, near=COMPARED)
             if float(solution.stats["cost"]) < float(seen["cost"]):
                 unknowns, seen, steps = solution.value, solution.stats, taken
         return self._trial(problem, Minimum(unknowns, {**seen, "steps": steps}), names, free, True, patience)

@@ -80,7 +80,10 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         damping = jnp.where(better & (kept > FAIR), less, jnp.where(better & (kept > POOR), state.damping, more))
         damping = jnp.where(state.steps == 0, self.damping, damping)
 
-        solution = solve(blocks, damping, args.windows.used)
+        # After the last look no step is taken.
+        ahead = lambda: solve(blocks, damping, args.windows.used)  # noqa: E731
+        nowhere = jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), eqx.filter_eval_shape(ahead))
+        solution = jax.lax.cond(state.steps + 1 < self.limit, ahead, lambda: nowhere)
         n = y.starts.shape[0]
         theta = jnp.clip(y.theta + solution.theta, args.lower, args.upper)
         theta = jnp.where(args.shrink, _keep_sign(args, y.theta, theta), theta)
@@ -111,7 +114,7 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         self, fn: Any, y: Unknowns, aux: Any, args: Problem, options: Any, state: ArrowState, tags: Any, result: Any
     ) -> Any:
         undamped = solve(state.blocks, jnp.asarray(0.0), args.windows.used)
-        stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps}
+        stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps, "damping": state.damping}
         return y, aux, stats | {"schur": undamped.schur, "pull": undamped.pull, "promise": _promise(state.blocks, undamped)}
 
 

@@ -29,8 +29,8 @@ trajectory and a sharp one to make it one; the loose one alone."""
 SOON, FAR_OFF = 20, 10.0
 """Steps after which a search with sharply tied windows is given up if it misses by so many noises still: what will join has come
 near, or is on its way."""
-NEAR = 0.1
-"""How near to the minimum a search comes that is not the last, as `Levenberg.atol`."""
+NEAR, CLOSE = 0.1, 1e-3
+"""How near to the minimum a search comes that is not the last, and the last, as `Levenberg.atol`."""
 
 NOWHERE = "no start led to a finite misfit: the record may hold something else than this model's motion"
 
@@ -178,26 +178,29 @@ def _search_held(
 
 
 def tie_windows(
-    problem: Problem, unknowns: Unknowns, ties: Sequence[float], *, limit: int = 60
+    problem: Problem, unknowns: Unknowns, ties: Sequence[float], *, limit: int = 60, near: float = CLOSE
 ) -> tuple[Problem, Minimum, int]:
-    """Tie the windows as sharply as ``ties`` say, one after the other: the tied problem, its solution, the steps taken."""
+    """Tie the windows as sharply as ``ties`` say, one after the other: the tied problem, its solution, the steps taken.
+
+    ``near`` is how near to the minimum it comes, as `Levenberg.atol`.
+    """
     steps = 0
     for tightness in ties:
         problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(tightness))
-        solution = _tied(problem, unknowns, SOON if len(ties) == 1 and limit > 2 * SOON else limit, limit)
+        solution = _tied(problem, unknowns, SOON if len(ties) == 1 and limit > 2 * SOON else limit, limit, near)
         unknowns, steps = solution.value, steps + int(solution.stats["steps"])
     return problem, solution, steps
 
 
-def _tied(problem: Problem, unknowns: Unknowns, soon: int, limit: int) -> Minimum:
+def _tied(problem: Problem, unknowns: Unknowns, soon: int, limit: int, near: float) -> Minimum:
     """A search with tied windows that is ``given_up``, as its stats then say, if after ``soon`` steps it is far off still."""
     # Free windows end close to the tied ones: a damped step would only fight the ties, which are stiff.
-    first = minimise(problem, unknowns, Levenberg(damping=1e-9, limit=soon))
+    first = minimise(problem, unknowns, Levenberg(atol=near, damping=1e-9, limit=soon))
     if soon == limit or int(first.stats["steps"]) < soon:
         return first
     if not float(first.stats["cost"]) < 0.5 * FAR_OFF**2 * freedom(first.value, problem.windows, tied=True):
         return Minimum(first.value, {**first.stats, "given_up": True})
-    rest = minimise(problem, first.value, Levenberg(damping=1e-9, limit=limit - soon))
+    rest = minimise(problem, first.value, Levenberg(atol=near, damping=first.stats["damping"], limit=limit - soon))
     return Minimum(rest.value, {**rest.stats, "steps": rest.stats["steps"] + soon})
 
 
