@@ -114,7 +114,7 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         self, fn: Any, y: Unknowns, aux: Any, args: Problem, options: Any, state: ArrowState, tags: Any, result: Any
     ) -> Any:
         undamped = solve(state.blocks, jnp.asarray(0.0), args.windows.used)
-        stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps, "damping": state.damping}
+        stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps}
         return y, aux, stats | {"schur": undamped.schur, "pull": undamped.pull, "promise": _promise(state.blocks, undamped)}
 
 

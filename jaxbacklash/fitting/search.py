@@ -200,7 +200,8 @@ def _tied(problem: Problem, unknowns: Unknowns, soon: int, limit: int, near: flo
         return first
     if not float(first.stats["cost"]) < 0.5 * FAR_OFF**2 * freedom(first.value, problem.windows, tied=True):
         return Minimum(first.value, {**first.stats, "given_up": True})
-    rest = minimise(problem, first.value, Levenberg(atol=near, damping=first.stats["damping"], limit=limit - soon))
+    # Where corners hold a search, beginning undamped again leads on: going on as damped as it was ends higher.
+    rest = minimise(problem, first.value, Levenberg(atol=near, damping=1e-9, limit=limit - soon))
     return Minimum(rest.value, {**rest.stats, "steps": rest.stats["steps"] + soon})
 
 
