@@ -5,23 +5,20 @@ from __future__ import annotations
 import shlex
 import sys
 import warnings
-from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from .. import __version__
 from ..criticism import Findings, Refinement, Surface, where_it_fails
 from ..criticism import refine as refine_record
 from ..criticism.ranking import plain
 from ..errors import NoAnswer
-from ..fitting import Fit
 from ..model_file import dump_model
 from ..report.refine_result import other_methods, refinement_json
 from ..system import System
 from .common import Reading, check_window, json_text, model_of_file, out_folder, progress, write_text
-
-if TYPE_CHECKING:
-    from ..report.html import Panel
 
 WORTH_A_TABLE = 0.3
 """Share of the missing torque that a table must predict out of sample before it is offered as a stopgap."""
@@ -46,40 +43,15 @@ def run(
     held = reading.record(heldout) if heldout is not None else None
     folder = out_folder(out)
     system = _given(model, inertia)
+    # What other methods say of the model that is likely kept is worked out beside the search for more.
     with progress(as_json) as tell, ThreadPoolExecutor(1) as aside:
-        likely: list[Beside] = []
-
-        def settled(fit: Fit) -> None:
-            if likely:
-                likely[-1].forget()
-            likely.append(Beside(fit, aside, folder is not None))
-
+        checked: list[Future[dict[str, Any]]] = []
         found = refine_record(
             record, heldout=held, model=model if system is None else "joint", inertia=inertia, system=system, window=window,
-            translational=translational, seed=seed, progress=tell, settled=settled,
+            translational=translational, seed=seed, progress=tell,
+            settled=lambda fit: checked.append(aside.submit(other_methods, fit)),
         )  # fmt: skip
-        deliver(found, folder, as_json, tell, likely[-1])
-
-
-class Beside:
-    """What is worked out of the model that is likely kept beside the search for more: what other methods say, and its pictures
-    where they are ``wanted``."""
-
-    def __init__(self, fit: Fit, aside: Executor, wanted: bool) -> None:
-        self.checked = aside.submit(other_methods, fit)
-        self.pictures = aside.submit(_pictures, fit) if wanted else None
-
-    def forget(self) -> None:
-        """Begin none of it any more: another model is likelier."""
-        for future in (self.checked, self.pictures):
-            if future is not None:
-                future.cancel()
-
-
-def _pictures(fit: Fit) -> list[Panel]:
-    from ..report.fit_report import pictures_of_fit  # pictures bring matplotlib, for which a plain run need not wait
-
-    return pictures_of_fit(fit)
+        deliver(found, folder, as_json, tell, checked[-1].result)
 
 
 def _given(model: str, inertia: float | None) -> System | None:
@@ -96,21 +68,22 @@ def _given(model: str, inertia: float | None) -> System | None:
     return System(full.inertia, full.contact, full.damper, {}, full.observed)
 
 
-def deliver(found: Refinement, folder: Path | None, machine: bool, tell: Any, beside: Beside | None = None) -> None:
-    """Print a refinement and write result.json, model.toml and report.html into the folder; ``beside`` is what was worked out of
-    its last model already."""
+def deliver(
+    found: Refinement, folder: Path | None, machine: bool, tell: Any, checked: Callable[[], dict[str, Any]] = lambda: {}
+) -> None:
+    """Print a refinement and write result.json, model.toml and report.html into the folder; ``checked`` waits for what other
+    methods say of it, nothing if they have not been asked."""
     with ThreadPoolExecutor(1) as aside:
         last = None if found.verdict.complete else _look(found, -1, tell)
         # The base model is looked at beside the writing and drawing of all else.
         alone = last is not None and len(found.stages) == 1
         base = None if alone or folder is None else aside.submit(_look, found, 0, tell)
         words = shlex.join(["jaxbacklash", *sys.argv[1:]])
-        checked = None if beside is None else beside.checked.result()
-        result = refinement_json(found, last, command_line=words, version=__version__, checked=checked)
+        result = refinement_json(found, last, command_line=words, version=__version__, checked=checked() or None)
         written = []
         if folder is not None:
             tell("drawing the report", 0.97)
-            written = _write(found, result, last, base, folder, beside)
+            written = _write(found, result, last, base, folder)
     if machine:
         sys.stdout.write(json_text(result))
         return
@@ -121,9 +94,8 @@ def deliver(found: Refinement, folder: Path | None, machine: bool, tell: Any, be
 
 
 def _write(
-    found: Refinement, result: dict[str, Any], last: Findings | None, base: Future[Findings | None] | None, folder: Path,
-    beside: Beside | None,
-) -> list[str]:  # fmt: skip
+    found: Refinement, result: dict[str, Any], last: Findings | None, base: Future[Findings | None] | None, folder: Path
+) -> list[str]:
     """The files of a refinement, by name; ``base`` will tell where the base model fails, None where ``last`` tells it."""
     fit = found.fit
     write_text(folder / "result.json", json_text(result))
@@ -137,12 +109,9 @@ def _write(
         title += "\nThe learned torque is a table read from this record: a stopgap, not physics."
         write_text(folder / "model-with-learned-torque.toml", dump_model(stopgap, heading=title, **about))
         written.insert(2, "model-with-learned-torque.toml")
-    from ..report.refine_report import refine_report
+    from ..report.refine_report import refine_report  # pictures bring matplotlib, for which a plain run need not wait
 
-    # Only one thread draws at a time: matplotlib's settings are one for all.
-    joint = _pictures(fit) if beside is None or beside.pictures is None else beside.pictures.result()
-    first = base.result if base is not None else lambda: last
-    refine_report(found, result, folder / "report.html", joint=joint, first=first, last=last)
+    refine_report(found, result, folder / "report.html", first=base.result if base is not None else lambda: last, last=last)
     return written
 
 

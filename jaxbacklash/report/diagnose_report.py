@@ -17,7 +17,7 @@ from .figures import (
     to_svg,
     where_it_fails,
 )
-from .fit_report import pictures_of_fit, series
+from .fit_report import pictures, series
 from .html import Panel, write_report
 
 SYMBOLS = {"dz": "z′", "dy": "y′"}
@@ -28,7 +28,7 @@ def diagnose_report(fit: Fit, found: Findings, result: dict[str, Any], path: Pat
     panels = [
         *failure_panels(found, fit.translational),
         *_ranking(result["stages"][0], found.adequate),
-        *pictures_of_fit(fit),
+        *pictures(fit.system, fit.records[0], fit.score, fit.noise[0], fit.translational, fit.per_inertia),
     ]
     write_report(path, result, panels, series(fit.records[0], fit.score, fit.translational))
 

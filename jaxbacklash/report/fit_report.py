@@ -24,7 +24,9 @@ INSIDE = slice(10, -10)
 
 def fit_report(fit: Fit, result: dict[str, Any], path: Path) -> None:
     """Write the page of a fit."""
-    panels = pictures_of_fit(fit)
+    panels = [
+        *pictures(fit.system, fit.records[0], fit.score, fit.noise[0], fit.translational, fit.per_inertia),
+    ]
     if len(result["stages"]) > 1 or fit.heldout is not None:
         held = "" if fit.heldout is None else ", on this record and on the held-out one"
         sentence = f"1 means that noise alone is left{held}."
@@ -49,11 +51,6 @@ def series(record: Record, score: Score, translational: bool) -> dict[str, Any]:
         "label": record.observed_name,
         "unit": channel_unit(record.observed_name, translational=translational),
     }
-
-
-def pictures_of_fit(fit: Fit) -> list[Panel]:
-    """The pictures of a fitted model beside its first record."""
-    return pictures(fit.system, fit.records[0], fit.score, fit.noise[0], fit.translational, fit.per_inertia)
 
 
 def pictures(

@@ -10,7 +10,7 @@ from typing import Any
 from ..criticism import Findings, Refinement
 from .diagnose_report import failure_panels
 from .figures import candidate_ranking, error_by_stage, to_svg
-from .fit_report import series
+from .fit_report import pictures, series
 from .html import Panel, write_report
 
 STRONG = 10.0
@@ -20,7 +20,7 @@ TELLING = 0.1
 
 
 def refine_report(
-    refinement: Refinement, result: dict[str, Any], path: Path, *, joint: list[Panel], first: Callable[[], Findings | None],
+    refinement: Refinement, result: dict[str, Any], path: Path, *, first: Callable[[], Findings | None],
     last: Findings | None = None,
 ) -> None:  # fmt: skip
     """Write the page of a refinement.
@@ -29,21 +29,22 @@ def refine_report(
     ----------
     refinement, result : what the loop found, and the same as result.json
     path : the file to write
-    joint : the pictures of the last model beside the record
     first : asked last, since it may still be looked for: where the first model fails, None where that cannot be told
     last : where the last model fails; None of a model that explains the record
     """
     fit = refinement.fit
-    drawn = {panel.anchor: panel for panel in joint}
+    joint = {panel.anchor: panel for panel in pictures(
+        fit.system, fit.records[0], fit.score, fit.noise[0], fit.translational, fit.per_inertia
+    )}  # fmt: skip
     panels = [_errors(result), *_rankings(result["stages"], refinement.verdict.complete)]
     base = first()
     if base is not None:
         panels += _failures(base, "the base model", "base", fit.translational)
     if len(refinement.stages) > 1 or base is None:
         have = " + ".join(["the base model", *refinement.effects])
-        rest = drawn["residual"]
+        rest = joint["residual"]
         panels += [_rest(refinement, have, rest)] if last is None else _failures(last, have, "last", fit.translational)
-    panels += [drawn[name] for name in ("loop", "model", "force", "phase") if name in drawn]
+    panels += [joint[name] for name in ("loop", "model", "force", "phase") if name in joint]
     write_report(path, result, panels, series(fit.records[0], fit.score, fit.translational))
 
 
