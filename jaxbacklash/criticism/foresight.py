@@ -7,10 +7,11 @@ program of its own.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from types import TracebackType
 
-from ..fitting.levenberg import Levenberg, ready
+from ..fitting.levenberg import Levenberg, fetch, ready
 from ..fitting.setup import first_guess
 from ..fitting.shooting import Problem
 from ..mechanics import AbstractEffect
@@ -51,13 +52,14 @@ class Foresight:
         self.aside.submit(self.looks, base, law)
 
     def member(self, law: Member) -> None:
-        """The program of a model with a law that has a memory and will be tried next: it is the largest of all."""
-        self.aside.submit(self.remembering, {**law.beside, law.name: law.tuned.effect}, law.tuned.system)
+        """Read the program of a model with a law that has a memory, if it is kept: it is the largest of all, and too dear to
+        compile on a first sight of the law."""
+        self.aside.submit(self.remembering, {**law.beside, law.name: law.tuned.effect}, law.tuned.system, fetch)
 
-    def remembering(self, effects: dict[str, AbstractEffect], joint: System) -> None:
-        """The program of a model with these effects, while its kin are still tuned."""
+    def remembering(self, effects: dict[str, AbstractEffect], joint: System, get: Callable[..., None] = ready) -> None:
+        """The program of a model with these effects."""
         problem, _ = self.bench.problem(effects, joint)
-        ready(problem, first_guess(problem), Levenberg())
+        get(problem, first_guess(problem), Levenberg())
 
     def catalogue(self) -> None:
         """The catalogue's program, which every search needs after that of the joint alone."""
