@@ -78,7 +78,7 @@ def start(*, cache: bool = True, devices: int | None = None, brief: bool = False
     ours = [f"--{name}={value}" for name, value in wanted.items() if name not in flags]
     os.environ["XLA_FLAGS"] = " ".join([flags, *ours]).strip()
     enable_double_precision()
-    # Where in the source every operation came from is a tenth of a program, and takes as long to read.
+    # Where in the source every operation came from is a sixteenth of a program, and takes as long to read.
     jax.config.update("jax_traceback_in_locations_limit", 0)
     with contextlib.suppress(RuntimeError):  # the program has computed already: it goes on with what it has
         jax.config.update("jax_num_cpu_devices", devices or min(cores(), MOST_CORES))
