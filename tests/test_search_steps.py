@@ -10,6 +10,7 @@ from jaxbacklash.criticism.candidates import _gain
 from jaxbacklash.criticism.search import Search, Step
 from jaxbacklash.criticism.tried import BARELY, SLIGHT
 from jaxbacklash.effects import CoulombJoint, Gravity, Stribeck
+from jaxbacklash.sensors import SensorGain
 
 from .number_models import Model
 
@@ -66,6 +67,21 @@ def test_what_promises_little_beside_one_trajectory_begins_where_that_has_arrive
     monkeypatch.setattr(search, "promised", lambda *_, **__: 0.7)
     assert search.add(before, SimpleNamespace(name="gravity", effect=Gravity(G=20.0))).cost == 99.9
     assert begun == [(pytest.approx(20.0 * BARELY), True)]
+
+
+def test_a_gain_that_promises_little_begins_near_one(monkeypatch):
+    """What takes nothing away is not zero for every law."""
+    before, begun = Model(frozenset({"preload"}), cost=100.0), []
+    search = Search(Bench())
+
+    def fit(effects, *_, **__):
+        begun.append(float(effects["sensor_gain"].g))
+        return Model(frozenset({"preload", "sensor_gain"}), cost=99.9)
+
+    monkeypatch.setattr(search.bench, "fit", fit)
+    monkeypatch.setattr(search, "promised", lambda *_, **__: 0.7)
+    search.add(before, SimpleNamespace(name="sensor_gain", effect=SensorGain(g=1.02)))
+    assert begun == [pytest.approx(1.0 + 0.02 * BARELY, rel=1e-12)]
 
 
 def test_of_those_that_promise_as_much_the_simplest_is_fitted_first():

@@ -47,8 +47,10 @@ class Foresight:
         """Go on from what the joint alone leaves."""
         law, share = self.friction(base)
         if law is not None:
-            giving = self.giving(base, share)
-            self.aside.submit(*((self.sliding, base, law) if giving is None else (self.remembering, giving, base.system)))
+            if (giving := self.giving(base, share)) is None:
+                self.aside.submit(self.sliding, base, law)
+            else:
+                self.aside.submit(self.remembering, giving, base.system)
         self.aside.submit(self.looks, base, law)
 
     def member(self, law: Member) -> None:

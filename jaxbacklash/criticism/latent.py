@@ -208,7 +208,7 @@ def _settled(smoother: Smoother, start: Unknowns) -> tuple[Smoother, Point, Impr
         return smoother, point, found, True
     rms = float(misfit(smoother.problem, start))
     if not CALMED < rms < np.inf:
-        return smoother, point, found, False
+        return smoother, *_search(smoother, point)  # near the noise it may still come down
     held = eqx.tree_at(lambda s: s.held, smoother, jnp.asarray(1.0))
     calmer = _calmer(held, rms)
     best = calmer, *_search(calmer, Point(start, none), NEAR * rows)
@@ -241,7 +241,7 @@ def _search(
     first = np.inf
     for step in range(STEPS):
         seen = improve(smoother, at, orders, jnp.asarray(-2.0 * np.log(10.0) * sizes))
-        first = min(first, float(seen.cost)) if step == 0 else first
+        first = first if step else float(seen.cost)
         if step >= SOON and float(seen.cost) > max(hopeless, FALLEN * first):
             break
         if before is not None:

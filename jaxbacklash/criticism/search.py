@@ -428,7 +428,9 @@ class Search(Unseen):
         tried = self.unstuck(current, tried)
         lowest = min((t.criterion for t in tried.values()), default=0.0)
         close = [n for n, t in tried.items() if t.criterion - lowest <= (1.0 - CLOSE) * (current.criterion - lowest)]
-        close = [n for n in close if not self.outdone(n, tried)]
+        outdone = {n for n in close if self.outdone(n, tried)}
+        self.behind |= {tried[n].names for n in outdone}
+        close = [n for n in close if n not in outdone]
         undecided = len(close) > 1
         return {n: self.shaken(t if t.done else self.finish(t)) if undecided and n in close else t for n, t in tried.items()}
 

@@ -118,12 +118,12 @@ class Tried:
             elif names > before.names and self.promised(before, candidate) < 1.0 and not self.bench.is_cut:
                 # One search is enough, from where the model before has arrived: if that has stuck, an addition that does nothing
                 # else may bring it on.
-                return self._keep(self.bench.fit({**present, candidate.name: _weaker(effect, BARELY)}, before, tied=True))
+                return self._keep(self.bench.fit({**present, candidate.name: effect.scaled(BARELY)}, before, tied=True))
             else:
                 trial = self._keep(self.joined(effects, before))
             if trial.cost > before.cost and names > before.names:
                 # The larger model holds the smaller one: it has stuck on the way from the strength that was predicted.
-                self._keep(self.bench.fit({**present, candidate.name: _weaker(effect, SLIGHT)}, before, tied=before.tied))
+                self._keep(self.bench.fit({**present, candidate.name: effect.scaled(SLIGHT)}, before, tied=before.tied))
         return self.known[key]
 
     def promised(self, before: Trial, candidate: Candidate, *, counted: bool = True) -> float:
@@ -266,10 +266,7 @@ class Tried:
         """Whether a candidate is clearly behind a simpler law that it contains, which explains and has had no more patience."""
         own = tried[name]
         simpler = [tried[n] for n in self.bench.laws[name].absorbs if n in tried]
-        ahead = [t for t in simpler if explained(t) and t.tied == own.tied and gain(own, t) > demanded(self.bench)]
-        if ahead and not own.tied:
-            self.behind.add(own.names)
-        return bool(ahead)
+        return any(explained(t) and t.tied == own.tied and gain(own, t) > demanded(self.bench) for t in simpler)
 
     def ruled_out(self, final: Trial, names: frozenset[str]) -> bool:
         """Whether a model fell behind another on free windows already: tying them gives it nothing that it lacks there."""
@@ -309,8 +306,3 @@ class Tried:
         if known is None or (trial.criterion, not trial.done) < (known.criterion, not known.done):
             self.known[key] = trial
         return self.known[key]
-
-
-def _weaker(effect: AbstractEffect, share: float) -> AbstractEffect:
-    """The effect with a share of its strengths."""
-    return with_values(effect, {n: share * values(effect)[n] for n in strengths(effect)})
