@@ -27,12 +27,14 @@ from typing import Any
 import equinox as eqx
 import jax
 import numpy as np
-from jax.stages import Compiled
+from jax.stages import Compiled, Lowered
 
 from . import read_ahead
 from .program_file import SUFFIX, devices_of, read_frame, write
 
 Key = tuple[Any, ...]
+LASTING: dict[str, str | bool] = {"xla_cpu_use_fusion_emitters": True}
+"""How a program is compiled that computes for long, even where `jaxbacklash.program.BRIEF` is how all others are."""
 KNOWN = ("jaxbacklash", "jax", "jaxlib", "equinox", "diffrax", "optimistix", "lineax", "numpy")
 """Packages whose code is told by their version or, for this one, by its source."""
 UNKEPT = (pickle.PicklingError, AttributeError, TypeError, ValueError, NotImplementedError, ImportError)
@@ -48,14 +50,15 @@ class _Foreign(Exception):
     """The arguments hold code whose text is not part of a program's name, like a user's own law."""
 
 
-def kept_jit(function: Callable[..., Any]) -> Callable[..., Any]:
+def kept_jit(function: Callable[..., Any], lasting: Callable[..., bool] = lambda *args: False) -> Callable[..., Any]:
     """`equinox.filter_jit` whose compiled programs outlive the process, once `jaxbacklash.start` has named a cache.
 
     Arguments are positional. A program is not kept, only jitted, where its arguments hold classes or functions of other
     packages (a user's own law may change without changing its name), and where it is called within another traced
     function. A kept file that cannot be read is made anew. What the result's ``programs`` holds is what this process uses. Its
     ``ready`` takes the same arguments and does all but the computing: threads can have the compiler at work side by side;
-    ``fetch`` does so only where the program is kept.
+    ``fetch`` does so only where the program is kept. Where ``lasting`` says of the same arguments that they will be computed with
+    for long, a program is compiled for that even in a process that is to compile fast.
     """
     jitted = eqx.filter_jit(function)
     programs: dict[Key, Future[Any]] = {}
@@ -81,7 +84,7 @@ def kept_jit(function: Callable[..., Any]) -> Callable[..., Any]:
             return jitted, []
         if mine:  # another thread that asks for the same program waits for this one
             try:
-                coming.set_result(_find(function, args, kinds, folder) or jitted)
+                coming.set_result(_find(function, args, kinds, folder, lasting(*args)) or jitted)
             except BaseException as error:
                 programs.pop(key, None)
                 coming.set_exception(error)
@@ -138,13 +141,13 @@ def _path(function: Callable[..., Any], args: Any, kinds: Any, folder: str) -> P
     return Path(folder) / "programs" / f"{_name(function, args, kinds)}{SUFFIX}"
 
 
-def _find(function: Callable[..., Any], args: Any, kinds: Any, folder: str) -> _Program | None:
+def _find(function: Callable[..., Any], args: Any, kinds: Any, folder: str, lasting: bool) -> _Program | None:
     """The program from its file, or traced and kept there; nothing where it cannot be kept."""
     try:
         path = _path(function, args, kinds, folder)
         found = _load(path)
         if found is None:
-            found = _make(function, args, path.name)
+            found = _make(function, args, path.name, lasting)
             with contextlib.suppress(*UNKEPT, jax.errors.JaxRuntimeError):  # this process has it
                 write(path, found.call, found.frame)
     except (_Foreign, *UNKEPT):
@@ -152,7 +155,7 @@ def _find(function: Callable[..., Any], args: Any, kinds: Any, folder: str) -> _
     return found
 
 
-def _make(function: Callable[..., Any], args: Any, name: str) -> _Program:
+def _make(function: Callable[..., Any], args: Any, name: str, lasting: bool) -> _Program:
     fixed = eqx.filter(args, _is_array, inverse=True)
     leaves, structure = jax.tree.flatten(args)
     frame: Any = None
@@ -167,8 +170,20 @@ def _make(function: Callable[..., Any], args: Any, name: str) -> _Program:
 
     # A name that JAX's own cache cannot know: what comes out of that cache, written down once more, lacks some of its code.
     flat.__name__ = f"{function.__name__}_{uuid.uuid4().hex}"
-    call = jax.jit(flat).lower([leaf for leaf in leaves if _is_array(leaf)]).compile()
-    return _Program(call, frame, name)
+    lowered = jax.jit(flat).lower([leaf for leaf in leaves if _is_array(leaf)])
+    _forget_origins(lowered)
+    return _Program(lowered.compile(LASTING if lasting else None), frame, name)
+
+
+def _forget_origins(lowered: Lowered) -> None:
+    """Take out of a program what says of every operation where it came from: half of its file, and a third of the time that
+    reading it takes."""
+    with contextlib.suppress(ImportError, AttributeError, ValueError):  # a JAX without this pass keeps them
+        from jaxlib.mlir.passmanager import PassManager
+
+        module: Any = lowered.compiler_ir("stablehlo")
+        with module.context:
+            PassManager.parse("builtin.module(strip-debuginfo)").run(module.operation)
 
 
 def _load(path: Path) -> _Program | None:

@@ -13,25 +13,22 @@ MOST_CORES = 8
 """More devices than this do not speed up a fit of usual length."""
 
 
+# Of a CPU's compiler alone; other devices ignore them.
+EXTRA = (
+    "xla_cpu_small_while_loop_byte_threshold=4194304",  # a loop over a block is one function: a third of a map's time
+    "xla_cpu_disable_loop_unrolling",  # no faster without, and compiled in two thirds of the time
+    "xla_cpu_use_multi_output_fusion",  # what several arrays share is computed once, and written down once
+)
 FLAGS = {
+    "xla_backend_extra_options": ",".join(EXTRA),
     "xla_cpu_prefer_vector_width": 512,  # halves the time of a fit on current CPUs
     # A program that is suspended for a while is not stuck.
     "xla_cpu_collective_call_warn_stuck_timeout_seconds": 100_000,
     "xla_cpu_collective_call_terminate_timeout_seconds": 100_000,
 }
-# Of a CPU's compiler alone; other devices ignore them.
-LOOPS = (
-    "xla_cpu_small_while_loop_byte_threshold=4194304",  # a loop over a block is one function: a third of a map's time
-    "xla_cpu_disable_loop_unrolling",  # no faster without, and compiled in two thirds of the time
-)
-LASTING = {
-    # What several arrays share is computed once: a factor of three in a map, an eighth in a fit.
-    "xla_backend_extra_options": ",".join((*LOOPS, "xla_cpu_use_multi_output_fusion")),
-}
-BRIEF = {
-    "xla_backend_extra_options": ",".join(LOOPS),
-    "xla_cpu_use_fusion_emitters": "false",  # compiled in two thirds of the time, a tenth slower ever after
-}
+BRIEF = {"xla_cpu_use_fusion_emitters": "false"}
+"""The older way of writing down what XLA has fused: compiled in two thirds of the time, but where several outputs share much it
+takes up to half as long again to compute."""
 
 
 def cache_folder() -> Path:
@@ -64,7 +61,8 @@ def start(*, cache: bool = True, devices: int | None = None, brief: bool = False
     ----------
     cache : keep compiled programs in `cache_folder`
     devices : CPU devices that share a fit's windows; default one a core, at most `MOST_CORES`
-    brief : the program computes little and ends, like most commands: compile faster, even if what is compiled is slower
+    brief : the program computes little and ends, like most commands: compile faster, even if what is compiled is slower, but
+        for what is known to compute much (`jaxbacklash.compiled.kept_jit`)
     """
     # Read when NumPy and SciPy load, which is no later than JAX.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -74,7 +72,7 @@ def start(*, cache: bool = True, devices: int | None = None, brief: bool = False
 
     # XLA reads its flags when the first computation starts.
     flags = os.environ.get("XLA_FLAGS", "")
-    wanted = FLAGS | (BRIEF if brief else LASTING)
+    wanted = FLAGS | (BRIEF if brief else {})
     ours = [f"--{name}={value}" for name, value in wanted.items() if name not in flags]
     os.environ["XLA_FLAGS"] = " ".join([flags, *ours]).strip()
     enable_double_precision()

@@ -45,6 +45,23 @@ def test_the_next_process_does_not_trace(cache):
     assert len(list(cache.iterdir())) == 1
 
 
+def test_a_program_does_not_say_where_in_the_source_it_came_from(cache):
+    call = process([])
+    with jax.named_scope("where_it_came_from"):
+        call(None, np.arange(4.0), None, 2)
+    text = next(iter(call.programs.values())).result().call.as_text()
+    assert "multiply" in text
+    assert "op_name" not in text
+
+
+def test_what_computes_for_long_is_compiled_for_that(cache, monkeypatch):
+    asked, compile_it = [], jax.stages.Lowered.compile
+    monkeypatch.setattr(jax.stages.Lowered, "compile", lambda self, how=None: (asked.append(how), compile_it(self, how))[1])
+    call = kept_jit(lambda a, steps: a + 1.0, lambda a, steps: steps > 10)
+    assert [float(call(np.zeros(()), steps)) for steps in (3, 30)] == [1.0, 1.0]
+    assert asked == [None, compiled.LASTING]
+
+
 @pytest.mark.parametrize("committed", [False, True])
 def test_what_came_out_of_a_program_goes_in_without_another(cache, committed):
     call = process([])

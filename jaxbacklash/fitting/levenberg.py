@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import equinox as eqx
@@ -56,7 +57,12 @@ def fetch(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int = MO
     _minimise.fetch(problem, start, how, max_steps)  # type: ignore[attr-defined]
 
 
-@kept_jit
+def _takes_long(problem: Problem, *rest: Any) -> bool:
+    """Whether a search may take many steps: that of the joint alone takes few, and all else waits for its program."""
+    return bool(problem.system.effects)
+
+
+@partial(kept_jit, lasting=_takes_long)
 def _minimise(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int) -> tuple[Unknowns, dict[str, Any]]:
     # Asked for only while tracing: a program that was kept need not wait for optimistix, diffrax and lineax to load.
     import optimistix as optx
