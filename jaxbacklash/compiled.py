@@ -110,6 +110,10 @@ def kept_jit(function: Callable[..., Any], lasting: Callable[..., bool] = lambda
     return call
 
 
+lasting_jit = functools.partial(kept_jit, lasting=lambda *args: True)
+"""`kept_jit` of what always computes for long."""
+
+
 class _Here:
     """Marks an array's place in a tree."""
 

@@ -17,7 +17,7 @@ import jax.numpy as jnp
 import jax.scipy.linalg as jsl
 import numpy as np
 
-from ..compiled import kept_jit
+from ..compiled import kept_jit, lasting_jit
 from ..fitting.shooting import (
     Blocks,
     Prediction,
@@ -227,7 +227,7 @@ def prior(s: Smoother, at: Point) -> tuple[Array, Array, Array, Array]:
     return diagonal, below, slope, rough
 
 
-@kept_jit
+@lasting_jit
 def improve(s: Smoother, at: Point, orders: Array, log_precisions: Array) -> Improved:
     """One Gauss-Newton step under the likeliest of G priors.
 
@@ -274,7 +274,7 @@ def misfit(problem: Problem, unknowns: Unknowns) -> Array:
     return jnp.sqrt(jnp.sum(shoot(problem, unknowns).motion ** 2) / jnp.maximum(rows, 1))
 
 
-@kept_jit
+@lasting_jit
 def finish(s: Smoother, at: Point, order: Array, log_precision: Array) -> tuple[Array, Array, Trajectory, Blocks]:
     """Standard errors of the torque (W, K) in its unit and of the parameters (q,) in theirs, the trajectories, the chain."""
     linear = linearise(s, at)
