@@ -10,6 +10,7 @@ from jaxbacklash.criticism.along_motion import motion, own_torques
 from jaxbacklash.criticism.evidence import demanded
 from jaxbacklash.criticism.search import Search
 from jaxbacklash.criticism.under_noise import blurred, own_rest, promises
+from jaxbacklash.criticism.unnamed import unnamed
 from jaxbacklash.criticism.unseen import GLIMPSED
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting.levenberg import Levenberg, Minimum
@@ -111,17 +112,30 @@ def test_a_delay_hides_no_flexible_link(kind):
     assert found.verdict.complete
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("line", [False, True])
-def test_a_delay_that_is_read_along_a_line_between_samples_blurs(line):
-    record, rig, _, truth = hidden(None, "stepped", 2)
+def read_late(seed, line):
+    """A workbench with every second sample of a record, z a sample and a half late and read along a line between two samples
+    or as it was, and the joint with a delay fitted to it."""
+    record, rig, _, truth = hidden(None, "stepped", seed)
     t, z, speed = record.t[::2], truth["z"][::2], (truth["v"] - truth["dx"])[::2]
     late = np.maximum(t - 1.5 * (t[1] - t[0]), 0.0)
     shown = np.interp(late, t, z) if line else CubicHermiteSpline(t, z, speed)(late)
     shown = shown + NOISE * np.random.default_rng(3).standard_normal(t.size)
-    bench, tied = delayed(Record(t, {"x": record.channels["x"][::2], "z": shown}), rig, 1.5 * (t[1] - t[0]))
-    taken = blurred(bench, tied)
+    return delayed(Record(t, {"x": record.channels["x"][::2], "z": shown}), rig, 1.5 * (t[1] - t[0]))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("line", [False, True])
+def test_a_delay_that_is_read_along_a_line_between_samples_blurs(line):
+    taken = blurred(*read_late(2, line))
     assert taken > 50.0 if line else taken < 8.0
+
+
+@pytest.mark.slow
+def test_what_a_blur_explains_as_well_is_no_unnamed_torque(monkeypatch):
+    bench, tied = read_late(5, True)
+    assert unnamed(bench, tied) is None
+    monkeypatch.setattr("jaxbacklash.criticism.unnamed.blurred", lambda bench, trial: 0.0)
+    assert unnamed(bench, tied) is not None
 
 
 @pytest.mark.parametrize("law", [jb.FlexibleLink(**LINK), jb.Gravity(-20.0), jb.CubicStiffness(1e6)])

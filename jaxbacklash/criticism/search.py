@@ -30,6 +30,7 @@ from .loose import by_free_windows
 from .memories import Member, families, may_replace, members
 from .steps import Step, leading
 from .tried import LOOSER, WHOLE, follows
+from .under_noise import delayed
 from .unseen import GLIMPSED, LIKELY, MOST_EFFECTS, TRIED, Unseen
 from .workbench import Trial, Workbench, adequate
 from .yielding import yielding
@@ -344,7 +345,7 @@ class Search(Unseen):
             name = self.best(current, real or tried, least)
             if evidence[name] < demanded(self.bench) or self.nibbles(current, tried[name], least):
                 break
-            if self.delayed(current) and self.imitated(current, tried[name]):
+            if delayed(self.bench, current) and self.imitated(current, tried[name]):
                 break
             relieved = self.relieved(current, tried[name])
             if current.cost - relieved.cost > LOOSER:

@@ -83,6 +83,11 @@ def panel_edges(bench: Workbench) -> np.ndarray:
     return np.asarray(windows.t0)[:, None] + float(windows.panel) * np.arange(np.shape(windows.force)[1])
 
 
+def delayed(bench: Workbench, trial: Trial) -> bool:
+    """Whether a model's measured channel lags: how it was read between two samples is not known."""
+    return any(bench.laws[n].lag is not AbstractEffect.lag for n in trial.names)
+
+
 def blurred(bench: Workbench, trial: Trial) -> float:
     r"""What a sensor that averages over a short time would take off the sum of squares beside a tied trial, at most.
 

@@ -19,7 +19,7 @@ from ..system import System
 from .along_motion import Motion
 from .evidence import SURE, demanded, explained
 from .quick_look import QuickLook, whitener
-from .under_noise import answered, as_it_ended, model_record, panel_edges, parabola
+from .under_noise import answered, as_it_ended, blurred, delayed, model_record, panel_edges, parabola
 from .workbench import Trial, Workbench
 
 LOOKED = 3
@@ -73,15 +73,18 @@ def unnamed(bench: Workbench, trial: Trial) -> Unnamed | None:
     own = QuickLook(model_record(bench, ended["predicted"]))
     applied = np.asarray(bench.windows.force)
     edges = panel_edges(bench)
+    unit = 0.5 * max(1.0, trial.misfit**2) * trial.correlation
     found = []
-    for seen in glimpses(bench, trial, own):
+    likely = glimpses(bench, trial, own)
+    # What a sensor explains as well that was read along a line between two samples, as one that lags may be, is no torque.
+    read = 0.5 * blurred(bench, trial) / unit if likely and delayed(bench, trial) else 0.0
+    for seen in likely:
         torque = np.interp(edges, own.motion.t, seen.torque)
 
         def rise(share: float, torque: np.ndarray = torque) -> float:
             return answered(eqx.tree_at(lambda p: p.windows.force, problem, applied + share * torque), unknowns)[0] - still
 
-        unit = 0.5 * max(1.0, trial.misfit**2) * trial.correlation
-        bar = seen.chance + SURE * demanded(bench)
+        bar = read + seen.chance + SURE * demanded(bench)
         fall = best_fall(rise, bar * unit) / unit
         if fall > bar:
             found.append(Unnamed(seen.words, fall))

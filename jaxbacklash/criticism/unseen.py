@@ -129,10 +129,6 @@ class Unseen(Tried):
         """What a law with internal states must promise in the place of an addition: the promise of a guess is a part of it."""
         return max(GLIMPSED * demanded(self.bench), HALF * 2.0 * (before.cost - after.cost))
 
-    def delayed(self, trial: Trial) -> bool:
-        """Whether a model's measured channel lags: how it was read between two samples is not known."""
-        return any(self.bench.laws[n].lag is not AbstractEffect.lag for n in trial.names)
-
     def glimpsed(self, trial: Trial) -> bool:
         """Whether the quick look sees a law with internal states that noise alone would hardly show.
 
