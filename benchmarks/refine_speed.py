@@ -1,6 +1,6 @@
 """How long `jaxbacklash refine` takes from the shell: with an empty cache of compiled programs, and with a filled one.
 
-    python -m benchmarks.refine_speed [--effects gravity cubic_stiffness coulomb_joint] [--runs 5] [--tiny]
+    python -m benchmarks.refine_speed [--effects gravity cubic_stiffness coulomb_joint] [--runs 5] [--draw 0] [--tiny]
 
 Each record is 30 s at 500 Hz with noise of 3e-5 rad on x and on z, and hides one effect; it is made by a program that
 shares nothing with the package. Every run is a process of its own, so that all that a user waits for counts: libraries
@@ -29,9 +29,10 @@ RATE, SIGMA, DURATION = 500.0, 3e-5, 30.0  # Hz, rad, s
 EFFECTS = ("gravity", "cubic_stiffness", "coulomb_joint", "coulomb_ground", "sensor_delay", "dahl")
 
 
-def write_case(folder: Path, number: int, effect: str, duration: float) -> tuple[Path, float]:
-    """A record that hides one effect, and its rig's inertia."""
-    rng = np.random.default_rng(8100 + number)
+def write_case(folder: Path, draw: int, effect: str, duration: float) -> tuple[Path, float]:
+    """A record that hides one effect, and its rig's inertia; ``draw`` tells one such record from another."""
+    number = EFFECTS.index(effect) if effect in EFFECTS else len(EFFECTS)
+    rng = np.random.default_rng(8100 + number + 100 * draw)
     rig, values = make_rig(rng), make_effects(rng, effect)
     truth = simulate_truth(rig, values, make_excitation(rng, "chirp", duration), RATE, duration)
     seen = measure(truth, rng, SIGMA, SIGMA)
@@ -53,9 +54,9 @@ def seconds(record: Path, inertia: float, cache: Path, out: Path | None) -> tupl
     return took, json.loads(done.stdout)["effects"]
 
 
-def measure_case(folder: Path, number: int, effect: str, duration: float, runs: int) -> None:
+def measure_case(folder: Path, draw: int, effect: str, duration: float, runs: int) -> None:
     """One line of the table."""
-    record, inertia = write_case(folder, number, effect, duration)
+    record, inertia = write_case(folder, draw, effect, duration)
     cache, out = folder / f"cache-{effect}", folder / f"out-{effect}"
     cold, found = seconds(record, inertia, cache, None)
     warm: dict[str, list[float]] = {"warm": [], "with report": []}
@@ -70,13 +71,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--effects", nargs="+", default=list(EFFECTS))
     parser.add_argument("--runs", type=int, default=5, help="warm runs, of which median and range are shown")
+    parser.add_argument("--draw", type=int, default=0, help="another joint and strength for each effect")
     parser.add_argument("--duration", type=float, default=DURATION, help="of each record [s]")
     parser.add_argument("--tiny", action="store_true", help="one short record, one warm run")
     options = parser.parse_args()
     effects, runs, duration = (["gravity"], 1, 6.0) if options.tiny else (options.effects, options.runs, options.duration)
     with tempfile.TemporaryDirectory() as folder:
-        for number, effect in enumerate(effects):
-            measure_case(Path(folder), number, effect, duration, runs)
+        for effect in effects:
+            measure_case(Path(folder), options.draw, effect, duration, runs)
 
 
 if __name__ == "__main__":

@@ -180,8 +180,8 @@ def _make(function: Callable[..., Any], args: Any, name: str, lasting: bool) -> 
 
 
 def _forget_origins(lowered: Lowered) -> None:
-    """Take out of a program what says of every operation where it came from: half of its file, and a third of the time that
-    reading it takes."""
+    """Take out of a program what says of every operation where it came from: half of its text, and up to a fifth of the
+    time that reading it takes."""
     with contextlib.suppress(ImportError, AttributeError, ValueError):  # a JAX without this pass keeps them
         from jaxlib.mlir.passmanager import PassManager
 

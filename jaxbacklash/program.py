@@ -27,8 +27,8 @@ FLAGS = {
     "xla_cpu_collective_call_terminate_timeout_seconds": 100_000,
 }
 BRIEF = {"xla_cpu_use_fusion_emitters": "false"}
-"""The older way of writing down what XLA has fused: compiled in two thirds of the time, but where several outputs share much it
-takes up to half as long again to compute."""
+"""The older way of writing down what XLA has fused: compiled in two thirds of the time, but where several outputs share much
+it takes half as long again to compute, or several times as long."""
 
 
 def cache_folder() -> Path:
