@@ -60,7 +60,8 @@ def kept_jit(function: Callable[..., Any], lasting: Callable[..., bool] = lambda
     ``fetch`` does so only where the program is kept. Where ``lasting`` says of the same arguments that they will be computed with
     for long, a program is compiled for that even in a process that is to compile fast.
     """
-    jitted = eqx.filter_jit(function)
+    jit: Any = eqx.filter_jit  # its types leave out what it hands on to `jax.jit`
+    jitted, jitted_to_last = jit(function), jit(function, compiler_options=LASTING)
     programs: dict[Key, Future[Any]] = {}
     lock = threading.Lock()
 
@@ -69,8 +70,12 @@ def kept_jit(function: Callable[..., Any], lasting: Callable[..., bool] = lambda
         setting: Any = jax.config
         folder = setting.jax_compilation_cache_dir
         leaves, structure = jax.tree.flatten(args)
-        if folder is None or any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
-            return jitted, []
+        if any(isinstance(leaf, jax.core.Tracer) for leaf in leaves):
+            return jitted, []  # the outermost program says how all of it is compiled
+        lasts = lasting(*args)
+        unkept = jitted_to_last if lasts else jitted
+        if folder is None:
+            return unkept, []
         arrays = [leaf for leaf in leaves if _is_array(leaf)]
         kinds = _kinds(leaves)
         key = (structure, tuple(_Here if _is_array(leaf) else leaf for leaf in leaves), kinds)
@@ -81,10 +86,10 @@ def kept_jit(function: Callable[..., Any], lasting: Callable[..., bool] = lambda
                 for old in [k for k in programs if programs[k].done()][: max(len(programs) - MOST, 0)]:
                     del programs[old]
         except TypeError:  # a fixed part that cannot be told from others
-            return jitted, []
+            return unkept, []
         if mine:  # another thread that asks for the same program waits for this one
             try:
-                coming.set_result(_find(function, args, kinds, folder, lasting(*args)) or jitted)
+                coming.set_result(_find(function, args, kinds, folder, lasts) or unkept)
             except BaseException as error:
                 programs.pop(key, None)
                 coming.set_exception(error)

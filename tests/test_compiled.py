@@ -62,6 +62,20 @@ def test_what_computes_for_long_is_compiled_for_that(cache, monkeypatch):
     assert asked == [None, compiled.LASTING]
 
 
+@pytest.mark.parametrize("kept", [True, False])
+def test_what_computes_for_long_is_so_compiled_where_it_is_not_kept_too(cache, monkeypatch, kept):
+    """A user's own law, or a machine without a cache."""
+    if not kept:
+        jax.config.update("jax_compilation_cache_dir", None)
+    asked, jit = [], eqx.filter_jit
+    monkeypatch.setattr(eqx, "filter_jit", lambda f, **how: jit(lambda *args: (asked.append(how), f(*args))[1], **how))
+    call = kept_jit(lambda law, a: a + 1.0, lambda law, a: a.size > 1)
+    own = type("Own", (eqx.Module,), {})()
+    assert [np.sum(call(own, np.zeros(n))) for n in (1, 2)] == [1.0, 2.0]
+    assert asked == [{}, {"compiler_options": compiled.LASTING}]
+    assert np.sum(jax.jit(lambda a: call(own, a))(np.zeros(2))) == 2.0  # within another program it may not say so
+
+
 @pytest.mark.parametrize("committed", [False, True])
 def test_what_came_out_of_a_program_goes_in_without_another(cache, committed):
     call = process([])
