@@ -137,7 +137,6 @@ def test_a_search_keeps_no_model_twice(monkeypatch):
     for name, does in {
         "attempts": attempts,
         "finished": lambda current, tried: tried,
-        "delayed": lambda current: False,
         "relieved": lambda before, after: before,
         "loosened": lambda trial: trial,
         "settle": lambda trial: Model(trial.names, cost=costs[next(iter(trial.names))]),
