@@ -326,7 +326,8 @@ class Search(Unseen):
             ranking = tuple(rank(self.bench, current, may_join(self.bench, current)))
             tried = self.attempts(current, ranking)
             promised = {c.name for c in ranking if c.gain > SURE * demanded(self.bench)}
-            lost = any(not t.tied or (t.cost > current.cost and n in promised) for n, t in tried.items())
+            parted = any(not t.tied and not self.ruled_out(current, t.names) for t in tried.values())
+            lost = parted or any(t.cost > current.cost and n in promised for n, t in tried.items() if t.tied)
             if lost and current.tied and not self.runs_through(current):
                 # A trajectory in one piece has stuck on the way to a clear gain: this stage is judged on free windows, unless
                 # they show nothing and another candidate went all the way.

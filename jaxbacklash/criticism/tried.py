@@ -287,7 +287,9 @@ class Tried:
             arrived = adequate(fitted) and (fitted.done or fitted.cost < trial.cost)
             if tied and not arrived:
                 # Windows that are one trajectory can keep a law from where free ones find it.
-                return self.settle(self.placed(trial, member, tied=False, patience=patience))
+                free = self.placed(trial, member, tied=False, patience=patience)
+                free = free if free.done or not explained(trial) else self.finish(free)
+                return free if explained(trial) and self.ruled_out(trial, free.names) else self.settle(free)
         return self.known[key]
 
     def finish(self, trial: Trial) -> Trial:

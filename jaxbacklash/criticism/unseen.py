@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 
 from ..fitting.search import silent
 from ..mechanics import AbstractEffect
+from ..parameters import specs
 from .candidates import Candidate
 from .evidence import demanded, explained
 from .memories import Member, families, members, without
@@ -26,6 +28,8 @@ DRAWS = 4
 """Draws of the noise that may speak for such a law where there is none."""
 LIKELY, HALF = 2, 0.5
 """Guesses of such a law that are fitted at most, and share of a gain that is enough to promise where more may come of it."""
+KEPT = 0.1
+"""Share of what such a law promises that its first fit must bring for its search to go on."""
 
 
 class Unseen(Tried):
@@ -69,13 +73,17 @@ class Unseen(Tried):
             if not law.states or law.family or name in trial.names:
                 continue
             self.progress(f"looking for {name} under the noise", 0.65)
-            telling = promises(self.bench, trial, law, least)
+            own = sum(not spec.fixed for spec in specs(law()).values()) * math.log(self.bench.record.samples)
+            worth = max(least, HALF * (demanded(self.bench) + own))
+            telling = promises(self.bench, trial, law, worth)
             # Its frequency is a guess, and what is fitted from one need not be the best there is.
             for fall, effect in telling[:LIKELY]:
-                if fall > max(least, HALF * telling[0][0]):
+                if fall > max(worth, HALF * telling[0][0]):
                     effects = {**self.bench.effects(trial), name: effect}
                     fitted = self.bench.fit(effects, trial, tied=True, followed=True, patience=WHOLE)
-                    found.append((name, self._keep(self.retied(fitted))))
+                    # One long trajectory has many minima; a law that is there comes at once to one that is worth going on from.
+                    if 2.0 * (trial.cost - fitted.cost) > KEPT * fall:
+                        found.append((name, self._keep(self.retied(fitted))))
         best = min(found, key=lambda one: one[1].criterion, default=None)
         return None if best is None or self.imitated(trial, best[1]) else best
 
