@@ -75,19 +75,23 @@ def test_ranking_speaks_in_errors_and_evidence():
     found = [
         Candidate(name, effects[name], gain, misfit * math.sqrt(1.0 - gain / (2 * cost)), {}) for name, gain in gains.items()
     ]
-    ranking = judged(score(4.0, 1.0), cost, found[::-1], {"preload": 55.0})
+    ranking = judged(score(4.0, 1.0), cost, found[::-1], {"preload": 55.0}, {"preload": (2.0, 1.0)})
     assert [entry.name for entry in ranking] == ["gravity", "preload", "quadratic_drag"]
     best, second, last = ranking
     assert best.predicted_rms_over_noise == pytest.approx(1.0, abs=0.01)
     assert best.evidence == pytest.approx(12000.0 - math.log(4000), rel=0.01)
     assert (second.evidence, second.refitted) == (55.0, True)
     assert 3.0 < second.predicted_rms_over_noise < 4.0
+    assert second.rms_over_noise == pytest.approx(1.0)  # its refit left noise, which its prediction had not told
+    assert best.rms_over_noise == best.predicted_rms_over_noise
     assert last.predicted_rms_over_noise == pytest.approx(4.0)
     assert last.evidence < 0.0
     assert "physics allows" in last.why
     entries = candidates_json(ranking)
     json.dumps(entries, allow_nan=False)
-    assert set(entries[0]) == {"name", "predicted_rms_over_noise", "evidence", "refitted", "why"}
+    assert set(entries[0]) == {
+        "name", "predicted_rms_over_noise", "refitted_rms_over_noise", "evidence", "refitted", "why",
+    }  # fmt: skip
     assert "gravity" in table(ranking)[1]
     assert len(table(ranking, 2)) == 3
 

@@ -30,9 +30,9 @@ class Ranked:
     """An absent effect.
 
     Attributes: ``name``; ``effect`` at its predicted (if ``refitted``, its ranked) values; ``predicted_rms_over_noise`` the
-    prediction error with it; ``evidence`` the fall of the information criterion, more is better and below 0 speaks against
-    it, found by a refit where ``refitted`` is True and predicted otherwise; ``why`` in words; ``moved`` values of the model's
-    own parameters that would go with it.
+    prediction error with it by the sensitivities, ``refitted_rms_over_noise`` by a refit, NaN without; ``evidence`` the fall of
+    the information criterion, more is better and below 0 speaks against it, found by a refit where ``refitted`` is True and
+    predicted otherwise; ``why`` in words; ``moved`` values of the model's own parameters that would go with it.
     """
 
     name: str
@@ -42,6 +42,13 @@ class Ranked:
     refitted: bool
     why: str
     moved: dict[str, float]
+    refitted_rms_over_noise: float = float("nan")
+
+    @property
+    def rms_over_noise(self) -> float:
+        """The prediction error with it, as well as it is known."""
+        known = self.refitted_rms_over_noise
+        return known if np.isfinite(known) else self.predicted_rms_over_noise
 
     def __str__(self) -> str:
         known = values(self.effect)
@@ -74,7 +81,7 @@ def table(ranking: Ranking, most: int = 10) -> list[str]:
     lines = [f"  {'effect':<22} {'rms/noise with it':>18} {'evidence':>10}"]
     for entry in ranking.entries[:most]:
         how = "refitted" if entry.refitted else "predicted"
-        lines.append(f"  {entry.name:<22} {entry.predicted_rms_over_noise:>18.3g} {entry.evidence:>10.0f}  {how}")
+        lines.append(f"  {entry.name:<22} {entry.rms_over_noise:>18.3g} {entry.evidence:>10.0f}  {how}")
     return lines
 
 
@@ -114,7 +121,7 @@ def rank_effects(fit: Fit, *, window: float = SCORE_WINDOW) -> Ranking:
 
 def of_stage(stage: Stage, following: Stage | None = None) -> Ranking:
     """The ranking at a stage of the loop; ``following`` is the stage that came of it, None for the last."""
-    found = judged(stage.fit.score, stage.fit.cost, stage.ranking, stage.evidence)
+    found = judged(stage.fit.score, stage.fit.cost, stage.ranking, stage.evidence, stage.refits)
     chosen = None if following is None else following.added
     if chosen is None or following is None:
         return found
@@ -129,11 +136,16 @@ def of_stage(stage: Stage, following: Stage | None = None) -> Ranking:
         )  # fmt: skip
     if chosen in known:
         first = dataclasses.replace(known.pop(chosen), why="added at the next stage")
+        if following.fit.system.effects.keys() == {*stage.fit.system.effects, chosen}:
+            first = dataclasses.replace(first, refitted=True, refitted_rms_over_noise=following.fit.score.rms)
         return Ranking((first, *known.values()), found.current)
     return found
 
 
-def judged(score: Score, cost: float, ranking: Sequence[Candidate], evidence: Mapping[str, float] | None = None) -> Ranking:
+def judged(
+    score: Score, cost: float, ranking: Sequence[Candidate], evidence: Mapping[str, float] | None = None,
+    refits: Mapping[str, tuple[float, float]] | None = None,
+) -> Ranking:  # fmt: skip
     """Candidates in units a person knows.
 
     Parameters
@@ -142,17 +154,16 @@ def judged(score: Score, cost: float, ranking: Sequence[Candidate], evidence: Ma
     cost : half the sum of squares that the candidates' gains refer to
     ranking : from `candidates.rank`
     evidence : of those that were really refitted, by name
+    refits : misfits of short windows before and after, of those that were really refitted, by name
     """
-    evidence = evidence or {}
+    evidence, refits = evidence or {}, refits or {}
     now, rows = correlation(score), score.residual.size
     whole = max(2.0 * cost, 1e-300)
     entries = []
     for c in ranking:
-        # Candidates predict the misfit of short windows; the quoted error has the same share of its excess over noise removed.
         left = max(whole - c.gain, 0.0) / whole
-        before = c.predicted**2 / left if left > 0.0 else 1.0
-        share = float(np.clip((c.predicted**2 - 1.0) / (before - 1.0), 0.0, 1.0)) if before > 1.05 else 1.0
-        error = np.sqrt(1.0 + share * (score.rms**2 - 1.0)) if before > 1.05 else score.rms * np.sqrt(left)
+        before = c.predicted / np.sqrt(left) if left > 0.0 else 1.0
+        share = _excess_kept(before, c.predicted)
         added = sum(not spec.fixed for spec in specs(c.effect).values())
         spread = max(1.0, c.predicted**2) * (1.0 + (now - 1.0) * share)
         predicted = (c.gain - added * np.log(rows)) / spread
@@ -160,10 +171,22 @@ def judged(score: Score, cost: float, ranking: Sequence[Candidate], evidence: Ma
         why = "refitted" if refitted else "predicted from sensitivities, not refitted"
         if not refitted and c.gain <= 0.0:
             why = "its strength would have to leave the range that physics allows"
-        entries.append(
-            Ranked(c.name, c.effect, float(error), float(evidence.get(c.name, predicted)), refitted, why, dict(c.moved))
-        )
+        told = float(evidence.get(c.name, predicted))
+        known = _error(score.rms, *refits[c.name]) if c.name in refits else float("nan")
+        error = _error(score.rms, before, c.predicted) if left > 0.0 else score.rms
+        entries.append(Ranked(c.name, c.effect, error, told, refitted, why, dict(c.moved), known))
     return Ranking(tuple(sorted(entries, key=lambda e: -e.evidence)), score.rms)
+
+
+def _excess_kept(before: float, after: float) -> float:
+    """Share of a misfit's excess over noise that is left of it; all where there is hardly any."""
+    return float(np.clip((after**2 - 1.0) / (before**2 - 1.0), 0.0, 1.0)) if before**2 > 1.05 else 1.0
+
+
+def _error(rms: float, before: float, after: float) -> float:
+    """The quoted error once the misfit of short windows has fallen: the same share of its excess over noise is removed."""
+    kept = 1.0 + _excess_kept(before, after) * (rms**2 - 1.0)
+    return float(np.sqrt(kept)) if before**2 > 1.05 else rms * after / before
 
 
 def correlation(score: Score) -> float:

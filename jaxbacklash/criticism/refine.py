@@ -37,13 +37,15 @@ SEPARATED = 2
 @dataclass(frozen=True)
 class Stage:
     """One model kept: the effect ``added`` (None at first), those ``dropped`` with it, its `Fit`, the ``ranking`` of what was
-    still absent, and the ``evidence`` of the candidates that were really refitted."""
+    still absent, and the ``evidence`` of the candidates that were really refitted, with their misfits before and after
+    (``refits``)."""
 
     added: str | None
     dropped: tuple[str, ...]
     fit: Fit
     ranking: tuple[Candidate, ...]
     evidence: dict[str, float]
+    refits: dict[str, tuple[float, float]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -136,7 +138,7 @@ def refine(
     progress("scoring predictions", 0.85)
     last = judged.tell(steps[-1].trial)
     fits = [*(judged(s.trial) for s in steps[:-1]), last]
-    stages = tuple(Stage(s.added, s.dropped, fit, s.ranking, s.evidence) for s, fit in zip(steps, fits))
+    stages = tuple(Stage(s.added, s.dropped, fit, s.ranking, s.evidence, s.refits) for s, fit in zip(steps, fits))
     clock["score"] = time.perf_counter()
     others = tuple(sorted(search.level, key=lambda names: search.level[names].criterion))
     verdict = judge_rest(steps[-1].trial, [s.fit for s in stages], unnamed(bench, steps[-1].trial))

@@ -339,7 +339,8 @@ class Search(Unseen):
             kept = {s.trial.names for s in steps}
             tried = self.finished(current, {n: t for n, t in tried.items() if t.names not in kept})
             evidence = {n: worth(self.bench, current, t, n) for n, t in tried.items()}
-            steps[-1] = replace(steps[-1], ranking=ranking, evidence=evidence)
+            refits = {n: (current.misfit, t.misfit) for n, t in tried.items()}
+            steps[-1] = replace(steps[-1], ranking=ranking, evidence=evidence, refits=refits)
             if not tried:
                 break
             real = {n: t for n, t in tried.items() if not led_on(self.bench, current, t, n)}

@@ -12,13 +12,14 @@ from .workbench import Trial
 @dataclass(frozen=True)
 class Step:
     """One model kept on the way: ``trial``, the effect ``added`` (None for the base), those ``dropped``, ``ranking`` of what was
-    absent, and ``evidence`` of the candidates that were really refitted, by name."""
+    absent, and by name ``evidence`` of the candidates that were really refitted, and ``refits``, the misfits before and after."""
 
     trial: Trial
     added: str | None
     dropped: tuple[str, ...]
     ranking: tuple[Candidate, ...]
     evidence: dict[str, float] = field(default_factory=dict)
+    refits: dict[str, tuple[float, float]] = field(default_factory=dict)
 
 
 def leading(steps: Sequence[Step], trial: Trial) -> list[Step]:

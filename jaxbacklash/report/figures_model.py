@@ -58,13 +58,20 @@ def error_by_stage(stages: Sequence[Mapping[str, Any]]) -> Figure:
     return figure
 
 
+def error_with(candidate: Mapping[str, Any]) -> Any:
+    """The error with an effect added, as its refit found it, else as predicted."""
+    known = candidate.get("refitted_rms_over_noise")
+    return known if is_number(known) else candidate.get("predicted_rms_over_noise")
+
+
 @drawn_in_style
 def candidate_ranking(candidates: Sequence[Mapping[str, Any]], *, current: float | None = None) -> Figure:
     """What the error would become with each absent effect added, best first.
 
     Parameters
     ----------
-    candidates : entries of ``candidates`` in result.json: ``name``, ``predicted_rms_over_noise``, ``evidence``
+    candidates : entries of ``candidates`` in result.json: ``name``, ``predicted_rms_over_noise``,
+        ``refitted_rms_over_noise``, which is drawn where it is known, ``evidence``
     current : rms over noise of the model as it is, drawn as a line
 
     Returns
@@ -77,7 +84,7 @@ def candidate_ranking(candidates: Sequence[Mapping[str, Any]], *, current: float
     figure = new_figure(0.9 + 0.27 * len(kept))
     ax = figure.subplots()
     at = np.arange(len(kept))
-    values: list[Any] = [entry.get("predicted_rms_over_noise") for entry in kept]
+    values = [error_with(entry) for entry in kept]
     known = [float(value) for value in values if is_number(value) and value > 0]
     highest = max([*known, current if is_number(current) and current else 1.0, 1.5])
     spread = highest > 8.0
@@ -96,7 +103,7 @@ def candidate_ranking(candidates: Sequence[Mapping[str, Any]], *, current: float
     ax.set_yticks(at, [str(entry.get("name", "?")) for entry in kept])
     hidden = len(candidates) - len(kept)
     more = f"; the best {len(kept)} of {len(candidates)}" if hidden else ""
-    ax.set(ylim=(len(kept) - 0.4, -0.6), xlabel=f"predicted rms over noise with the effect added{more}")
+    ax.set(ylim=(len(kept) - 0.4, -0.6), xlabel=f"rms over noise with the effect added{more}")
     if spread:
         readable_log(ax, "x", lowest, highest * 1.05)
     else:

@@ -87,7 +87,7 @@ def ranking_panel(title: str, sentence: str, drawn: Any, number: int = 0) -> Pan
     return Panel(
         title, sentence, to_svg(drawn), f"ranking-{number}",
         "Bars show the prediction error that the sensitivities of the fitted model predict, at the best strength and shape of "
-        "each effect. The most telling ones are then fitted for real, and the evidence of those is what that fit found; "
+        "each effect. The most telling ones are then fitted for real, and error and evidence of those are what that fit found; "
         "a predicted evidence can be too high, since predictions are linear.",
     )  # fmt: skip
 

@@ -25,6 +25,7 @@ def candidates_json(ranking: Ranking) -> list[dict[str, Any]]:
         {
             "name": entry.name,
             "predicted_rms_over_noise": finite(entry.predicted_rms_over_noise),
+            "refitted_rms_over_noise": finite(entry.refitted_rms_over_noise),
             "evidence": finite(entry.evidence),
             "refitted": entry.refitted,
             "why": entry.why,

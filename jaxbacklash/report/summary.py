@@ -20,7 +20,7 @@ from .facts import (
     parts,
     skeleton_tables,
 )
-from .figures_model import stage_name
+from .figures_model import error_with, stage_name
 from .style import format_evidence, format_interval, is_number, short, with_unit
 
 SETTLED = ("complete", "chaotic", "regular", "stochastic")  # verdicts that leave nothing open
@@ -119,7 +119,7 @@ def candidate_tables(stages: Sequence[Entry]) -> list[dict[str, Any]]:
         rows = [
             {
                 "name": str(entry.get("name", "?")),
-                "rms": short(entry.get("predicted_rms_over_noise")),
+                "rms": short(error_with(entry)),
                 "evidence": format_evidence(entry.get("evidence")),
                 "why": str(entry.get("why") or ""),
             }
