@@ -11,6 +11,7 @@ from jaxbacklash.report import figures
 from jaxbacklash.report.series import series_json
 from jaxbacklash.report.style import error_decimals, format_interval, format_value, pretty_unit, short
 from jaxbacklash.report.thinning import envelope, extremes
+from jaxbacklash.report.zooms import worst_and_typical
 
 from .report_samples import EDGES, HOSTILE, NOISE, RATE, all_figures
 
@@ -130,3 +131,11 @@ def test_series_numbers_are_those_that_text_with_as_many_digits_gives():
     assert data["t"] == [k / 500.0 for k in range(values.size)]
     for name, digits in (("measured", 7), ("residual", 4)):
         assert data[name] == [float(f"{value:.{digits}g}") for value in values]
+
+
+@pytest.mark.parametrize(
+    ("misfit", "shown"),
+    [([1.0, 1.0, 5.0, 1.0, 1.1, 1.2, 1.3, 1.1], (2, 7)), ([1.0, 3.0, 1.1], (1, 2)), ([np.nan] * 3, (1, 1))],
+)
+def test_a_typical_window_is_not_shown_beside_the_worst_where_there_is_another(misfit, shown):
+    assert worst_and_typical(np.asarray(misfit)) == shown

@@ -17,8 +17,9 @@ def model(*names, misfit, freedom):
     return SimpleNamespace(names=frozenset(names), free=(), system=system, misfit=misfit, cost=0.5 * freedom * misfit**2)
 
 
-def fit(rms, median):
-    return SimpleNamespace(score=SimpleNamespace(rms=rms, median=median))
+def fit(rms, median, held=None):
+    heldout = None if held is None else SimpleNamespace(rms=held, median=held)
+    return SimpleNamespace(score=SimpleNamespace(rms=rms, median=median), heldout=heldout)
 
 
 @pytest.mark.parametrize("names", [(), ("gravity",)])
@@ -39,3 +40,27 @@ def test_a_long_record_tells_a_little_more_than_noise_from_noise(freedom, comple
     verdict = judge_rest(final, [fit(1.4, 1.3), fit(1.032, 1.03)])
     assert verdict.complete == complete
     assert ("noise explains" in verdict.text) != complete
+
+
+@pytest.mark.parametrize(
+    ("misfit", "before", "after", "said"),
+    [
+        (17.0, 34.0, 83.0, "what was added stands in for something else"),
+        (17.0, 34.0, 20.0, None),
+        (1.0, 34.0, 1.02, None),
+        (1.0, 34.0, 3.0, "still missed, by 3 times"),
+        (1.0, 1.5, 3.0, "rises from 1.5 to 3 times the noise: there it does not hold"),
+        (1.0, None, None, None),
+    ],
+)
+def test_what_a_held_out_record_says_against_a_model_is_told(misfit, before, after, said):
+    fits = [fit(33.0, 33.0, before), fit(misfit, misfit, after)]
+    verdict = judge_rest(model("gravity", misfit=misfit, freedom=20_000), fits)
+    assert verdict.complete == (misfit < 1.1)  # it is the record's own rest that tells
+    assert ("held-out" in verdict.text) == (said is not None)
+    assert said is None or said in verdict.text
+
+
+def test_a_joint_that_explains_one_record_alone_says_that_the_other_is_missed():
+    alone = fit(1.0, 1.0, 4.0)
+    assert "The held-out record is still missed, by 4 times" in judge_rest(model(misfit=1.0, freedom=20_000), [alone]).text

@@ -15,11 +15,13 @@ NEAR_NOISE, SIGMAS = 1.01, 3.0
 standard deviations of that root may come on top: in 80 records of right models it did not exceed 1.013."""
 LITTLE_MORE = 1.1
 """A misfit below this looks like noise, so that a verdict against it says what noise would leave."""
+WORSE = 1.1
+"""Growth of the error on a held-out record from which what was added does not hold there."""
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """``complete`` when what is left is noise; ``text`` says so in one or two sentences."""
+    """``complete`` when what is left is noise; ``text`` says so in a sentence or two, and what a held-out record says against it."""
 
     complete: bool
     text: str
@@ -71,4 +73,17 @@ def judge_rest(final: Trial, fits: list[Fit], beyond: Unnamed | None = None) -> 
         text += ", and no effect in the catalogue explains the rest."
         if strained:
             text += f" {' and '.join(strained)} at the end of its range: more likely it stands in for something else."
-    return Verdict(bool(complete), text)
+    return Verdict(bool(complete), text + _elsewhere(first, last, complete))
+
+
+def _elsewhere(first: Fit, last: Fit, complete: bool) -> str:
+    """What a held-out record says against a model, nothing where it says nothing against it."""
+    before, after = first.heldout, last.heldout
+    if before is None or after is None:
+        return ""
+    if last is not first and after.rms > WORSE * before.rms:
+        rises = f" On the held-out record the error rises from {before.rms:.3g} to {after.rms:.3g} times the noise: "
+        return rises + ("there it does not hold." if complete else "what was added stands in for something else.")
+    if complete and after.median > LITTLE_MORE:
+        return f" The held-out record is still missed, by {after.rms:.3g} times the noise: something else is at work there."
+    return ""

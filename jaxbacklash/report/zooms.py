@@ -31,10 +31,13 @@ def window_misfit(difference: np.ndarray, edges: np.ndarray) -> np.ndarray:
 
 
 def worst_and_typical(misfit: np.ndarray) -> tuple[int, int]:
-    """Which window is missed most, and which is nearest to the median window."""
+    """Which window is missed most, and which is nearest to the median window, not shown with the other where there is a choice."""
     if not np.any(np.isfinite(misfit)):  # nothing to rank: show the middle of the record
         return (misfit.size - 1) // 2, (misfit.size - 1) // 2
-    return int(np.nanargmax(misfit)), int(np.nanargmin(np.abs(misfit - np.nanmedian(misfit))))
+    worst = int(np.nanargmax(misfit))
+    off = np.abs(misfit - np.nanmedian(misfit))
+    apart = np.where(np.abs(np.arange(misfit.size) - worst) > 2 * NEIGHBOURS, off, np.nan)
+    return worst, int(np.nanargmin(apart if np.any(np.isfinite(apart)) else off))
 
 
 def stretch_around(index: int, edges: np.ndarray) -> slice:
