@@ -21,7 +21,7 @@ WORSE = 1.1
 
 @dataclass(frozen=True)
 class Verdict:
-    """``complete`` when what is left is noise; ``text`` says so in a sentence or two, and what a held-out record says against it."""
+    """``complete`` when what is left is noise; ``text`` says so, and what a held-out record says against it."""
 
     complete: bool
     text: str

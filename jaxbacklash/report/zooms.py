@@ -31,7 +31,7 @@ def window_misfit(difference: np.ndarray, edges: np.ndarray) -> np.ndarray:
 
 
 def worst_and_typical(misfit: np.ndarray) -> tuple[int, int]:
-    """Which window is missed most, and which is nearest to the median window, not shown with the other where there is a choice."""
+    """Which window is missed most, and which is nearest to the median window, not beside the other if there is a choice."""
     if not np.any(np.isfinite(misfit)):  # nothing to rank: show the middle of the record
         return (misfit.size - 1) // 2, (misfit.size - 1) // 2
     worst = int(np.nanargmax(misfit))
