@@ -87,6 +87,8 @@ def test_ranking_speaks_in_errors_and_evidence():
     assert last.predicted_rms_over_noise == pytest.approx(4.0)
     assert last.evidence < 0.0
     assert "physics allows" in last.why
+    everything = Candidate("gravity", effects["gravity"], 2.0 * cost, 0.0, {})
+    assert judged(score(4.0, 1.0), cost, [everything])[0].predicted_rms_over_noise == 0.0
     entries = candidates_json(ranking)
     json.dumps(entries, allow_nan=False)
     assert set(entries[0]) == {

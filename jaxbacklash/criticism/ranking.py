@@ -173,7 +173,7 @@ def judged(
             why = "its strength would have to leave the range that physics allows"
         told = float(evidence.get(c.name, predicted))
         known = _error(score.rms, *refits[c.name]) if c.name in refits else float("nan")
-        error = _error(score.rms, before, c.predicted) if left > 0.0 else score.rms
+        error = _error(score.rms, before, c.predicted) if left > 0.0 else 0.0
         entries.append(Ranked(c.name, c.effect, error, told, refitted, why, dict(c.moved), known))
     return Ranking(tuple(sorted(entries, key=lambda e: -e.evidence)), score.rms)
 
