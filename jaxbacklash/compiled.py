@@ -38,7 +38,7 @@ LASTING: dict[str, str | bool] = {"xla_cpu_use_fusion_emitters": True}
 KNOWN = ("jaxbacklash", "jax", "jaxlib", "equinox", "diffrax", "optimistix", "lineax", "numpy")
 """Packages whose code is told by their version or, for this one, by its source."""
 UNKEPT = (pickle.PicklingError, AttributeError, TypeError, ValueError, NotImplementedError, ImportError)
-"""What arguments or programs that cannot be written down raise."""
+"""What pickle and JAX raise of arguments or programs that cannot be written down: such a program serves its own process alone."""
 
 
 MOST = 24

@@ -85,6 +85,11 @@ def specs(tree: Any) -> dict[str, Spec]:
     return dict(_walk(tree, ""))
 
 
+def free_specs(tree: Any) -> dict[str, Spec]:
+    """The same without those that are never fitted."""
+    return {name: spec for name, spec in specs(tree).items() if not spec.fixed}
+
+
 def ravel(tree: Any) -> np.ndarray:
     """All parameter values as one vector, shape (number of parameters,), in the order of `specs`."""
     return np.array([float(leaf) for leaf in jax.tree.leaves(tree)])

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..fitting.search import TIES
 from ..mechanics import AbstractEffect
-from ..parameters import specs, with_values
+from ..parameters import free_specs, specs, with_values
 from .workbench import Trial, Workbench, strengths, width
 
 
@@ -34,7 +34,7 @@ class Candidate:
     @property
     def parameters(self) -> int:
         """How many of its parameters are free."""
-        return sum(not spec.fixed for spec in specs(self.effect).values())
+        return len(free_specs(self.effect))
 
 
 def rank(bench: Workbench, trial: Trial, names: Iterable[str] | None = None) -> list[Candidate]:

@@ -14,7 +14,7 @@ from ..fitting.fit import SCORE_WINDOW
 from ..fitting.setup import make_problem
 from ..fitting.shooting import Unknowns
 from ..mechanics import AbstractEffect
-from ..parameters import specs, values
+from ..parameters import free_specs, specs, values
 from ..precision import require_double_precision
 from ..system import System
 from .candidates import Candidate, rank
@@ -164,9 +164,8 @@ def judged(
         left = max(whole - c.gain, 0.0) / whole
         before = c.predicted / np.sqrt(left) if left > 0.0 else 1.0
         share = _excess_kept(before, c.predicted)
-        added = sum(not spec.fixed for spec in specs(c.effect).values())
         spread = max(1.0, c.predicted**2) * (1.0 + (now - 1.0) * share)
-        predicted = (c.gain - added * np.log(rows)) / spread
+        predicted = (c.gain - c.parameters * np.log(rows)) / spread
         refitted = c.name in evidence
         why = "refitted" if refitted else "predicted from sensitivities, not refitted"
         if not refitted and c.gain <= 0.0:
@@ -202,8 +201,7 @@ def correlation(score: Score) -> float:
 def _measured(before: Score, after: Score, effect: AbstractEffect) -> float:
     """Evidence for an effect from the prediction errors without and with it."""
     rows = after.residual.size
-    added = sum(not spec.fixed for spec in specs(effect).values())
-    fall = rows * (before.rms**2 - after.rms**2) - added * np.log(rows)
+    fall = rows * (before.rms**2 - after.rms**2) - len(free_specs(effect)) * np.log(rows)
     return float(fall / (max(1.0, after.rms**2) * correlation(after)))
 
 

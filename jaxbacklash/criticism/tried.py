@@ -288,8 +288,11 @@ class Tried:
             if tied and not arrived:
                 # Windows that are one trajectory can keep a law from where free ones find it.
                 free = self.placed(trial, member, tied=False, patience=patience)
-                free = free if free.done or not explained(trial) else self.finish(free)
-                return free if explained(trial) and self.ruled_out(trial, free.names) else self.settle(free)
+                if explained(trial):
+                    free = free if free.done else self.finish(free)
+                    if self.ruled_out(trial, free.names):
+                        return free
+                return self.settle(free)
         return self.known[key]
 
     def finish(self, trial: Trial) -> Trial:

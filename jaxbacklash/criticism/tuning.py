@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from ..mechanics import AbstractEffect
-from ..parameters import Spec, ravel, specs, unravel, values, with_values
+from ..parameters import free_specs, ravel, specs, unravel, values, with_values
 from ..system import System
 from .along_motion import own_tangents
 from .quick_look import QuickLook, whitener
@@ -53,7 +53,7 @@ def tune(look: QuickLook, system: System, free: tuple[str, ...], variants: list[
     left = np.zeros(0)
     for _ in range(ROUNDS):
         effect, system, left = _round(look, system, free, effect)
-    return Tuned(effect, system, left, len(_open(effect)))
+    return Tuned(effect, system, left, len(free_specs(effect)))
 
 
 def lead(look: QuickLook, free: tuple[str, ...], tuned: Tuned, start: System, rivals: Sequence[Rival]) -> float:
@@ -119,10 +119,6 @@ def level(law: AbstractEffect) -> float:
     return max((abs(found[n]) for n, s in specs(law).items() if s.unit == "N m"), default=0.0)
 
 
-def _open(effect: AbstractEffect) -> dict[str, Spec]:
-    return {n: s for n, s in specs(effect).items() if not s.fixed}
-
-
 def _round(
     look: QuickLook, system: System, free: tuple[str, ...], effect: AbstractEffect
 ) -> tuple[AbstractEffect, System, np.ndarray]:
@@ -136,7 +132,7 @@ def _round(
         return rows - basis @ (basis.T @ rows)
 
     target = project(left)
-    described, present = _open(effect), values(effect)
+    described, present = free_specs(effect), values(effect)
     index = [list(specs(effect)).index(n) for n in described]
     # What is positive and has no upper bound moves by factors.
     factors = np.array([s.lower >= 0.0 and not np.isfinite(s.upper) for s in described.values()])

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..fitting.search import silent
 from ..mechanics import AbstractEffect
-from ..parameters import specs
+from ..parameters import free_specs
 from .candidates import Candidate
 from .evidence import demanded, explained
 from .memories import Member, families, members, without
@@ -73,7 +73,7 @@ class Unseen(Tried):
             if not law.states or law.family or name in trial.names:
                 continue
             self.progress(f"looking for {name} under the noise", 0.65)
-            own = sum(not spec.fixed for spec in specs(law()).values()) * math.log(self.bench.record.samples)
+            own = len(free_specs(law())) * math.log(self.bench.record.samples)
             worth = max(least, HALF * (demanded(self.bench) + own))
             telling = promises(self.bench, trial, law, worth)
             # Its frequency is a guess, and what is fitted from one need not be the best there is.
