@@ -7,7 +7,6 @@ method, another treatment of the switches.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import equinox as eqx
@@ -182,7 +181,7 @@ def measured_base(record: Record) -> Sampled:
     return Sampled(jnp.asarray(record.t[0]), jnp.asarray(record.dt), *(jnp.asarray(a) for a in (x, dx, force)))
 
 
-def as_record(trajectory: Trajectory, system: System, *, path: str = "", columns: Sequence[str] | None = None) -> Record:
+def as_record(trajectory: Trajectory, system: System, *, path: str = "") -> Record:
     """A simulated motion as a record with the channels a measurement would have."""
     channels: dict[str, np.ndarray] = {}
     force = np.asarray(jnp.broadcast_to(trajectory.drive.force, trajectory.t.shape))
@@ -191,4 +190,5 @@ def as_record(trajectory: Trajectory, system: System, *, path: str = "", columns
     if np.any(force):
         channels["F"] = force
     channels[system.observed] = np.asarray(trajectory.observed)
-    return Record(np.asarray(trajectory.t), channels, path)
+    # What was computed is in seconds and radians, however large.
+    return Record(np.asarray(trajectory.t), channels, path, confirmed=frozenset({"t", *channels}))

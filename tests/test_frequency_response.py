@@ -67,7 +67,9 @@ def test_curves_and_their_picture():
     assert np.all(np.abs(found.h2[found.used]) >= np.abs(found.h1[found.used]) * (1 - 1e-9))
     assert np.max(found.coherence) <= 1.0 + 1e-12
     assert "inertia" in str(found)
-    assert figures.to_svg(figures.frequency_response(found)).startswith("<svg")
+    picture = figures.to_svg(figures.frequency_response(found))
+    assert picture.startswith("<svg")
+    assert "mathdefault" not in picture, "decades are plain numbers"
 
 
 def test_what_cannot_be_used_is_refused():

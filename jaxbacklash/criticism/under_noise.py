@@ -139,9 +139,9 @@ def as_if_right(bench: Workbench, trial: Trial, draws: int) -> Iterator[Workbenc
     if not bench.windows.by_force:
         noises["x"] = bench.layout.input_noise[0]
     for _ in range(draws):
-        drawn = {n: v + random.normal(0.0, noises[n], v.size) if n in noises else v for n, v in record.channels.items()}
+        drawn = {n: v + random.normal(0.0, noises[n], v.size) for n, v in record.channels.items() if n in noises}
         looked = copy.copy(bench)
-        looked.quick = QuickLook(Record(record.t, drawn))
+        looked.quick = QuickLook(record.replace(**drawn))
         yield looked
 
 
@@ -162,9 +162,9 @@ def model_record(bench: Workbench, predicted: Prediction) -> Record:
     """A fitted trajectory at the samples of the record, the measured one where windows end before it."""
     record = bench.record
     seen = np.asarray(bench.windows.weight) > 0.0
-    channels = dict(record.channels)
+    channels: dict[str, np.ndarray] = {}
     for name, values in ((record.observed_name, predicted.motion), ("x", predicted.input)):
-        if name in channels and np.shape(values) == seen.shape and not (name == "x" and bench.windows.by_force):
+        if name in record.channels and np.shape(values) == seen.shape and not (name == "x" and bench.windows.by_force):
             values = np.asarray(values)[seen][: record.samples]
-            channels[name] = np.concatenate([values, channels[name][values.size :]])
-    return Record(record.t, channels)
+            channels[name] = np.concatenate([values, record.channels[name][values.size :]])
+    return record.replace(**channels)

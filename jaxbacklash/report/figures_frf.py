@@ -28,8 +28,7 @@ def frequency_response(found: Response) -> Figure:
     size.plot(grid, np.abs(mode), color=MODEL, lw=1.2, ls=(0, (5, 2)), label="fitted mode")
     size.plot(grid, 1.0 / (j * omega**2), color=INK, lw=0.8, ls=":", label="mass line, 1/(Jω²)")
     size.axhline(1.0 / k, color=INK, lw=0.8, ls=(0, (1, 1)), label="stiffness line, 1/k")
-    size.set_yscale("log")
-    size.set_ylim(0.3 * float(np.min(np.abs(mode))), 3.0 * float(np.max(np.abs(mode))))
+    readable_log(size, "y", 0.3 * float(np.min(np.abs(mode))), 3.0 * float(np.max(np.abs(mode))))
     unit = found.values["stiffness"].unit
     size.set_ylabel(with_unit("|Y/F|", "m/N" if unit == "N/m" else "rad/(N m)"))
     phase.plot(line[shown], _lag(found.h1[shown]), color=MEASURED, lw=1.2)
