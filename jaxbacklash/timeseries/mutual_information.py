@@ -56,7 +56,7 @@ def choose_delay(series: np.ndarray, rng: np.random.Generator) -> Delay:
     Rule: 1 if the autocorrelation is below 1/e after one sample already, as for maps; else the first lag whose information,
     averaged over three lags in a finely sampled series, is no higher than at any later lag up to half as far again, and
     rises afterwards by more than its error. A shallow minimum is easily passed over, and coordinates a half swing apart
-    repeat each other; so where no minimum lies within a third of a swing, the delay is a quarter of a swing, or the time in
+    repeat each other; so where no clear minimum lies within a third of a swing, the delay is a quarter of a swing, or the time in
     which the autocorrelation falls to 1/e if that is shorter.
 
     Parameters
@@ -88,7 +88,7 @@ def choose_delay(series: np.ndarray, rng: np.random.Generator) -> Delay:
             return Delay(int(lags[k]), "first minimum of the average mutual information", lags, information)
     fallen, quarter = memory, max(1, round(period / 4.0))
     which = "a quarter of a swing" if quarter < fallen else "where the autocorrelation has fallen to 1/e"
-    why = f"the mutual information has no minimum within a third of a swing; taken instead: {which}"
+    why = f"the mutual information has no clear minimum within a third of a swing; taken instead: {which}"
     return Delay(int(min(fallen, quarter)), why, lags, information)
 
 
