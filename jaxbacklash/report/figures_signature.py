@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from ..signature import ExponentMap, PatternMatch, PlayFromChaos, Worth
 from .drawing import drawn_in_style, empty_figure, new_figure, readable_log
@@ -99,9 +100,9 @@ def play_likelihood(found: PlayFromChaos, *, truth: float | None = None, fit: tu
 
 
 def _more_ticks(ax: Axes, low: float, high: float) -> None:
-    """Ticks for a logarithmic axis shorter than a decade."""
+    """Ticks at round numbers for a logarithmic axis that is hardly longer than a decade."""
     if high / low < 12.0:
-        ticks = np.geomspace(low, high, 7)
+        ticks = [tick for tick in MaxNLocator(6, steps=[1, 2, 5, 10]).tick_values(low, high) if low <= tick <= high]
         ax.set_xticks(ticks, [f"{tick:.3g}" for tick in ticks])
 
 
