@@ -21,6 +21,8 @@ from .along_motion import motion, own_torques, torques
 
 ORDER = 8
 """Order of the autoregression that whitens the rows."""
+RUNAWAY = 1e100
+"""A torque this large, whatever its unit, belongs to a motion that has run away."""
 
 
 class QuickLook:
@@ -99,7 +101,10 @@ class QuickLook:
         left = left if known is None else left - known
         name, told = canonical_name(variants[0]), np.stack([ravel(v) for v in variants])
         if name not in self._columns or not np.array_equal(self._columns[name][0], told):
-            self._columns[name] = told, self.average(own_torques(variants, system, self.motion)).T
+            own = own_torques(variants, system, self.motion)
+            # A shape whose own motion runs away speaks for nothing.
+            own = np.where(np.max(np.abs(own), axis=1, keepdims=True) < RUNAWAY, own, 0.0)
+            self._columns[name] = told, self.average(own).T
         columns = self._columns[name][1]
         white = whitener(left - by @ np.linalg.lstsq(by, left, rcond=None)[0])
         left, by, columns = white(left), white(by), white(columns)
