@@ -16,7 +16,7 @@ import numpy as np
 
 from ..fitting.search import TIES
 from ..mechanics import AbstractEffect
-from ..parameters import free_specs, specs, with_values
+from ..parameters import free_specs, specs, values, with_values
 from .workbench import Trial, Workbench, strengths, width
 
 
@@ -52,6 +52,12 @@ def rank(bench: Workbench, trial: Trial, names: Iterable[str] | None = None) -> 
     return sorted(found, key=lambda c: -c.gain)
 
 
+def reshaped(bench: Workbench, trial: Trial, name: str) -> Candidate:
+    """A law in place of a simpler one that it contains, at the shape that the trajectory, not the quick look, finds likeliest."""
+    guesses = [null(guess) for guess in bench.laws[name].guesses(trial.system, bench.quick.motion)]
+    return max((_score(bench, trial, {name: guess}, [name], instead=True)[0] for guess in guesses), key=lambda c: c.gain)
+
+
 def may_join(bench: Workbench, trial: Trial) -> list[str]:
     """Absent effects without internal states that a search adds: joint friction is one law, a richer one replaces it."""
     rubbing = {n for n in trial.names if rubs(bench.laws[n])}
@@ -67,9 +73,19 @@ def rubs(law: type[AbstractEffect]) -> bool:
 def shaped(bench: Workbench, trial: Trial, name: str) -> AbstractEffect:
     """The law at its null strength, at the likeliest of the shapes it may have."""
     guesses = bench.laws[name].guesses(trial.system, bench.quick.motion)
-    guess = bench.quick.choose(trial.system, trial.free, guesses)[0]
-    described = specs(guess)
-    return with_values(guess, {n: float(described[n].null or 0.0) for n in strengths(guess)})
+    return null(bench.quick.choose(trial.system, trial.free, guesses)[0])
+
+
+def null(effect: AbstractEffect) -> AbstractEffect:
+    """The law at its null strength, its shape as it is."""
+    described = specs(effect)
+    return with_values(effect, {n: float(described[n].null or 0.0) for n in strengths(effect)})
+
+
+def contained(bench: Workbench, trial: Trial, law: type[AbstractEffect]) -> dict[str, float]:
+    """Strengths, by their parameters, of the simpler laws in a model that a law contains."""
+    present = bench.effects(trial)
+    return {f"{name}.{n}": values(present[name])[n] for name in law.absorbs if name in present for n in strengths(present[name])}
 
 
 def _groups(bench: Workbench, trial: Trial, shapes: dict[str, AbstractEffect]) -> list[list[str]]:
@@ -87,7 +103,11 @@ def _groups(bench: Workbench, trial: Trial, shapes: dict[str, AbstractEffect]) -
     return groups
 
 
-def _score(bench: Workbench, trial: Trial, shapes: dict[str, AbstractEffect], group: list[str]) -> list[Candidate]:
+def _score(
+    bench: Workbench, trial: Trial, shapes: dict[str, AbstractEffect], group: list[str], *, instead: bool = False
+) -> list[Candidate]:
+    """Candidates at these shapes from one set of sensitivities, beside a model or ``instead`` of what they contain of it: then
+    their strengths are what they add to that."""
     columns = [(name, n) for name in group for n in strengths(shapes[name])]
     problem, _ = bench.problem(
         bench.effects(trial), trial.system, extra=[f"{name}.{n}" for name, n in columns], shapes=shapes
@@ -97,18 +117,21 @@ def _score(bench: Workbench, trial: Trial, shapes: dict[str, AbstractEffect], gr
     q = len(trial.free)
     found = []
     for name in group:
+        held = contained(bench, trial, bench.laws[name]) if instead else {}
+        had = max(map(abs, held.values()), default=0.0)
+        kept = [i for i, n in enumerate(trial.free) if n not in held]
         own = [q + j for j, (other, _) in enumerate(columns) if other == name]
-        index = [*range(q), *own]
-        step, gain = _gain(schur[np.ix_(index, index)], pull[index], q)
+        index = [*kept, *own]
+        step, gain = _gain(schur[np.ix_(index, index)], pull[index], len(kept))
         step = step * scales[index]
         described = specs(shapes[name])
-        moved = {n: described[n].null + size for n, size in zip(strengths(shapes[name]), step[q:])}
-        if not all(described[n].lower <= v <= described[n].upper for n, v in moved.items()):
-            moved = {n: float(np.clip(v, described[n].lower, described[n].upper)) for n, v in moved.items()}
+        moved = {n: described[n].null + size for n, size in zip(strengths(shapes[name]), step[len(kept) :])}
+        if not all(described[n].lower <= v + had <= described[n].upper for n, v in moved.items()):
+            moved = {n: float(np.clip(v, described[n].lower - had, described[n].upper - had)) for n, v in moved.items()}
             gain = 0.0
         left = max(2.0 * cost - gain, 0.0)
         predicted = trial.misfit * np.sqrt(left / max(2.0 * cost, 1e-300))
-        joint = {n: trial.value[n] + float(size) for n, size in zip(trial.free, step[:q])}
+        joint = {n: trial.value[n] + float(size) for n, size in zip((trial.free[i] for i in kept), step)}
         found.append(Candidate(name, with_values(shapes[name], moved), gain, float(predicted), joint))
     return found
 

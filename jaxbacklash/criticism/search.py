@@ -410,11 +410,7 @@ class Search(Unseen):
             tried[c.name] = self.add(current, c, rival)
             if not looked and not explained(tried[c.name]) and not self.apart:
                 tried, looked = tried | self.memories(current, ranking), True
-        # Beside a law that sticks its richer relative is judged badly from outside: it is tried unless the quick look could tell.
-        for c in (c for c in ranking if c.name not in tried):
-            simpler = sorted(current.names.intersection(self.bench.laws[c.name].absorbs))
-            if simpler and (not explained(current) or (current.tied and self.untold(current, simpler[0], c.name))):
-                tried[c.name] = self.add(current, c)
+        tried |= self.richer(current, [c for c in ranking if c.name not in tried])
         return {name: trial for name, trial in tried.items() if math.isfinite(trial.criterion)}
 
     def may_help(self, current: Trial, candidate: Candidate) -> bool:

@@ -10,7 +10,7 @@ import numpy as np
 from ..fitting.search import silent
 from ..mechanics import AbstractEffect
 from ..parameters import free_specs
-from .candidates import Candidate
+from .candidates import Candidate, reshaped
 from .evidence import demanded, explained
 from .memories import Member, families, members, without
 from .tried import WHOLE, Tried
@@ -114,6 +114,21 @@ class Unseen(Tried):
                 self.progress(f"trying {name} in place of {dry}", 0.45)
                 self._keep(self.bench.fit({**beside, name: law}, trial, tied=True, followed=True, patience=WHOLE))
             found[name] = self.known[key]
+        return found
+
+    def richer(self, current: Trial, others: list[Candidate]) -> dict[str, Trial]:
+        """Models with a law in place of a simpler one that it contains, by name.
+
+        Beside a law that sticks its richer relative is judged badly from outside: it is tried unless the quick look could tell.
+        """
+        found: dict[str, Trial] = {}
+        for c in others:
+            simpler = sorted(current.names.intersection(self.bench.laws[c.name].absorbs))
+            if simpler and not explained(current):
+                found[c.name] = self.add(current, c)
+            elif simpler and current.tied and self.untold(current, simpler[0], c.name):
+                # Nor does the quick look then know its shape, and from a wrong one a search may not come back.
+                found[c.name] = self.add(current, reshaped(self.bench, current, c.name))
         return found
 
     def untold(self, trial: Trial, dry: str, name: str) -> list[AbstractEffect]:
