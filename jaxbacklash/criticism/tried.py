@@ -8,7 +8,7 @@ from collections.abc import Callable
 from ..fitting.search import silent
 from ..mechanics import AbstractEffect
 from ..parameters import specs, values, with_values
-from .candidates import Candidate, rubs
+from .candidates import Candidate, contained, rubs
 from .cuts import cut_free
 from .evidence import demanded, explained, gain, significance
 from .memories import Member
@@ -95,13 +95,10 @@ class Tried:
 
         Beside a ``rival`` with fewer parameters its free windows are only fitted until it is clear that it does not replace that.
         """
-        present = self.bench.effects(before)
-        effect = candidate.effect
-        for name in type(effect).absorbs:
-            if name in present:
-                simpler = values(present.pop(name))
-                taken = max(abs(simpler[n]) for n in strengths(self.bench.laws[name]()))
-                effect = with_values(effect, {n: values(effect)[n] + taken for n in strengths(effect)})
+        effect, law = candidate.effect, type(candidate.effect)
+        present = {n: e for n, e in self.bench.effects(before).items() if n not in law.absorbs}
+        held = max(map(abs, contained(self.bench, before, law).values()), default=0.0)
+        effect = with_values(effect, {n: values(effect)[n] + held for n in strengths(effect)})
         names = frozenset(present) | {candidate.name}
         key = (names, before.tied or self.bench.grips(names))
         if key not in self.known:
