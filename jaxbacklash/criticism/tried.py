@@ -95,14 +95,10 @@ class Tried:
 
         Beside a ``rival`` with fewer parameters its free windows are only fitted until it is clear that it does not replace that.
         """
-        effect, law = candidate.effect, type(candidate.effect)
-        present = {n: e for n, e in self.bench.effects(before).items() if n not in law.absorbs}
-        held = max(map(abs, contained(self.bench, before, law).values()), default=0.0)
-        effect = with_values(effect, {n: values(effect)[n] + held for n in strengths(effect)})
-        names = frozenset(present) | {candidate.name}
+        effects = self.with_one_more(before, candidate)
+        names = frozenset(effects)
         key = (names, before.tied or self.bench.grips(names))
         if key not in self.known:
-            effects = {**present, candidate.name: effect}
             start = before
             if rival is not None and not key[1]:
                 start = self.bench.fit(effects, before, near=ROUGH)
@@ -115,13 +111,22 @@ class Tried:
             elif names > before.names and self.promised(before, candidate) < 1.0 and not self.bench.is_cut:
                 # One search is enough, from where the model before has arrived: if that has stuck, an addition that does nothing
                 # else may bring it on.
-                return self._keep(self.bench.fit({**present, candidate.name: effect.scaled(BARELY)}, before, tied=True))
+                barely = {**effects, candidate.name: effects[candidate.name].scaled(BARELY)}
+                return self._keep(self.bench.fit(barely, before, tied=True))
             else:
                 trial = self._keep(self.joined(effects, before))
             if trial.cost > before.cost and names > before.names:
                 # The larger model holds the smaller one: it has stuck on the way from the strength that was predicted.
-                self._keep(self.bench.fit({**present, candidate.name: effect.scaled(SLIGHT)}, before, tied=before.tied))
+                slight = {**effects, candidate.name: effects[candidate.name].scaled(SLIGHT)}
+                self._keep(self.bench.fit(slight, before, tied=before.tied))
         return self.known[key]
+
+    def with_one_more(self, before: Trial, candidate: Candidate) -> dict[str, AbstractEffect]:
+        """The effects of a model with one more, in place of simpler laws that it contains and whose strength it takes over."""
+        effect, law = candidate.effect, type(candidate.effect)
+        present = {n: e for n, e in self.bench.effects(before).items() if n not in law.absorbs}
+        held = max(map(abs, contained(self.bench, before, law).values()), default=0.0)
+        return {**present, candidate.name: with_values(effect, {n: values(effect)[n] + held for n in strengths(effect)})}
 
     def promised(self, before: Trial, candidate: Candidate, *, counted: bool = True) -> float:
         """What a candidate is predicted to bring, as a share of what it must; ``counted`` says that it must outweigh its own

@@ -124,11 +124,14 @@ class Unseen(Tried):
         found: dict[str, Trial] = {}
         for c in others:
             simpler = sorted(current.names.intersection(self.bench.laws[c.name].absorbs))
-            if simpler and not explained(current):
-                found[c.name] = self.add(current, c)
-            elif simpler and current.tied and self.untold(current, simpler[0], c.name):
-                # Nor does the quick look then know its shape, and from a wrong one a search may not come back.
-                found[c.name] = self.add(current, reshaped(self.bench, current, c.name))
+            untold = bool(simpler) and explained(current) and current.tied and self.untold(current, simpler[0], c.name)
+            if not simpler or (explained(current) and not untold):
+                continue
+            found[c.name] = self.add(current, c)
+            # Nor does the quick look then know its shape, and from a wrong one a search may not come back.
+            other = reshaped(self.bench, current, c.name) if untold and found[c.name].tied else None
+            if other is not None and other.gain > 2.0 * (current.cost - found[c.name].cost):
+                found[c.name] = self._keep(self.bench.fit(self.with_one_more(current, other), current, tied=True))
         return found
 
     def untold(self, trial: Trial, dry: str, name: str) -> list[AbstractEffect]:
