@@ -1,14 +1,20 @@
 """A richer law in place of a simpler one begins at the shape that the trajectory finds likeliest."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import jaxbacklash as jb
-from jaxbacklash.criticism.candidates import contained, rank, reshaped
+from jaxbacklash.criticism import unseen as module
+from jaxbacklash.criticism.candidates import Candidate, contained, rank, reshaped
+from jaxbacklash.criticism.unseen import Unseen
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.parameters import with_values
 from tests.hidden import hidden
+
+from .number_models import Model
 
 TRUTH = {"Tc": 6.0, "Ts": 12.0, "vs": 0.2}
 
@@ -54,3 +60,31 @@ def test_it_takes_the_shape_that_the_trajectory_asks_for(beside_coulomb, monkeyp
     fitted = bench.fit({"stribeck": effect}, coulomb, tied=True, patience=60)
     assert fitted.cost < coulomb.cost - 50.0
     np.testing.assert_allclose([fitted.value[f"stribeck.{n}"] for n in TRUTH], list(TRUTH.values()), rtol=0.1)
+
+
+@pytest.mark.parametrize(
+    ("untold", "gain", "second", "tries", "kept"),
+    [
+        (False, 60.0, 940.0, 0, None),  # the quick look could tell, and put others first
+        (True, 60.0, 940.0, 1, 940.0),
+        (True, 60.0, 995.0, 1, 990.0),  # from there it has stuck: what came of the quick look's shape stays
+        (True, 10.0, 940.0, 0, 990.0),  # it promises no more than has come already
+    ],
+)
+def test_it_is_tried_beside_the_quick_looks_where_that_cannot_tell(monkeypatch, untold, gain, second, tries, kept):
+    names, fitted = frozenset({"stribeck"}), []
+    bench = SimpleNamespace(laws={"stribeck": jb.effects.Stribeck, "coulomb_joint": jb.CoulombJoint})
+    bench.effects = lambda trial: {"coulomb_joint": jb.CoulombJoint(3.0)}
+    bench.fit = lambda effects, *_, **__: fitted.append(effects) or Model(names, cost=second)
+    search = Unseen(bench)
+    coulomb, found = Model(frozenset({"coulomb_joint"}), cost=1000.0), Model(names, cost=990.0)
+    monkeypatch.setattr(search, "add", lambda before, candidate: search._keep(found))
+    monkeypatch.setattr(search, "untold", lambda trial, dry, name: [jb.CoulombJoint()] if untold else [])
+    shaped = Candidate("stribeck", jb.effects.Stribeck(-1.0, 4.0, 0.2), gain, 1.0, {})
+    monkeypatch.setattr(module, "reshaped", lambda *of: shaped)
+    tried = search.richer(coulomb, [Candidate("stribeck", jb.effects.Stribeck(), 0.0, 1.0, {})])
+    assert len(fitted) == tries
+    assert (tried["stribeck"].cost if tried else None) == kept
+    for effects in fitted:
+        assert list(effects) == ["stribeck"]
+        assert (float(effects["stribeck"].Tc), float(effects["stribeck"].Ts)) == (2.0, 7.0)
