@@ -94,6 +94,7 @@ def test_a_richer_relative_is_tried_where_the_quick_look_could_not_tell(monkeypa
     added = []
     monkeypatch.setattr(search, "may_help", lambda *_: False)
     monkeypatch.setattr(search, "given", lambda *_: {})
+    monkeypatch.setattr(module, "reshaped", lambda *_: SimpleNamespace(gain=0.0))
     monkeypatch.setattr(search, "add", lambda before, c: added.append(c.name) or model(90.0, stribeck=Stribeck(3.0, 4.0, 0.1)))
     ranking = [SimpleNamespace(name=n, gain=0.0, predicted=1.0) for n in ("gravity", "stribeck")]
     assert list(search.attempts(trial, ranking)) == (["stribeck"] if tried else [])
