@@ -105,6 +105,11 @@ class AbstractEffect(eqx.Module):
         return [cls(**strengths)]
 
     @classmethod
+    def ringing(cls, system: Any, omega: float) -> list[AbstractEffect]:
+        """Points for a fit to start from that make a joint like ``system`` ring at ``omega`` [rad/s]; none where it cannot."""
+        return []
+
+    @classmethod
     def in_place_of(cls, other: AbstractEffect, motion: Any | None = None) -> list[AbstractEffect]:
         """Points from which a fit may start where this law takes the place of a fitted one of its ``family``; none: `guesses`."""
         return []

@@ -21,6 +21,7 @@ from ..mechanics import AbstractEffect
 from ..records import Record
 from .along_motion import motion, own_torques
 from .quick_look import QuickLook
+from .ringing import ringing
 from .workbench import Trial, Workbench
 
 SHARE = 0.001
@@ -54,9 +55,15 @@ def promises(
         return answered(eqx.tree_at(lambda p: p.windows.force, problem, applied + torque), unknowns)
 
     still, predicted = answer(np.zeros(()))
-    along = motion(model_record(bench, predicted))
+    own = model_record(bench, predicted)
+    along = motion(own)
+    heard = [shape for omega in ringing(bench.record, own) for shape in law.ringing(trial.system, omega)][: len(guesses)]
+    # As many at a time as there are guesses: for so many a program is at hand.
+    groups = [(heard + guesses)[: len(guesses)], guesses] if heard else [guesses]
+    torques = [own_torques(group, trial.system, along) for group in groups]
+    tried = [*zip(heard, torques[0]), *zip(guesses, torques[-1])]
     found: list[tuple[float, AbstractEffect]] = []
-    for guess, torque in zip(guesses, own_torques(guesses, trial.system, along)):
+    for guess, torque in tried:
         torque = np.interp(edges, along.t, torque)
         once = answer(SHARE * torque)[0] - still
         if problem.system.slides and not once < LOST * still:

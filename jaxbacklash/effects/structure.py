@@ -35,6 +35,12 @@ class FlexibleLink(AbstractEffect):
         small, own = 0.1 * float(system.inertia), natural_frequency(system)
         return [cls(small, small * w * w, 0.02 * small * w) for w in own * np.geomspace(LOWEST, HIGHEST, STEPS)]
 
+    @classmethod
+    def ringing(cls, system: Any, omega: float) -> list[AbstractEffect]:
+        # More damped than most links: heard in a wider band, and its tone shifts as its inertia is found.
+        small = 0.1 * float(system.inertia)
+        return [cls(small, small * omega**2, 0.1 * small * omega)]
+
     def scaled(self, factor: float) -> FlexibleLink:
         # A smaller inertia that swings at the same frequency, as well damped.
         return FlexibleLink(factor * self.J2, factor * self.k2, factor * self.c2)
