@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.special import betainc
 
 from ..records import Record
 
@@ -10,8 +11,10 @@ MOST = 2
 """Bands that are given back at most."""
 WIDTH = 0.012
 """Half the width of a band, as a share of its frequency: that of a resonance with so much damping."""
-CLEAR = 5.0
-"""Standard errors by which a band must be louder than what surrounds it."""
+RARE = 0.02
+"""Share of records, at most, in which any band is as loud beside what surrounds it where all is noise."""
+APART = 6.0
+"""Widths between two bands that are given back."""
 SURROUNDED = 2.0
 """From one part in so many to so many times its frequency goes what surrounds a band."""
 SLOWEST, FASTEST = 3.0, 0.8
@@ -29,6 +32,8 @@ def ringing(record: Record, own: Record) -> list[float]:
         if (size := float(np.std(left))) > 0.0:
             power += np.abs(np.fft.rfft(left / size)) ** 2
             channels += 1
+    if not channels:
+        return []
     hertz = np.fft.rfftfreq(record.samples, record.dt)
     total = np.concatenate([[0.0], np.cumsum(power)])
 
@@ -41,14 +46,13 @@ def ringing(record: Record, own: Record) -> list[float]:
     half = np.maximum(WIDTH * at, 1.5 * step)
     band, inside = within(at - half, at + half)
     wide, around = within(at / SURROUNDED, at * SURROUNDED)
-    level = (wide - band) / np.maximum(around - inside, 1)
-    # The power of noise at one frequency has the standard deviation of its mean, or less where channels are added.
-    spread = level * np.sqrt(inside / max(channels, 1))
-    louder = np.where(spread > 0.0, (band - level * inside) / np.where(spread > 0.0, spread, 1.0), 0.0)
+    # The power of noise at one frequency is exponentially distributed: a band's share of what surrounds it is as Beta.
+    quiet = 1.0 - band / np.maximum(wide, 1e-300)
+    chance = at.size * betainc(channels * np.maximum(around - inside, 1), channels * inside, quiet)
     found: list[float] = []
-    for k in np.argsort(-louder):
-        if louder[k] < CLEAR or len(found) == MOST:
+    for k in np.argsort(chance, kind="stable"):
+        if not chance[k] < RARE or len(found) == MOST:
             break
-        if all(abs(at[k] / known - 1.0) > 3.0 * WIDTH for known in found):
+        if all(abs(at[k] / known - 1.0) > APART * WIDTH for known in found):
             found.append(float(at[k]))
     return [2.0 * np.pi * frequency for frequency in found]
