@@ -105,8 +105,11 @@ class AbstractEffect(eqx.Module):
         return [cls(**strengths)]
 
     @classmethod
-    def ringing(cls, system: Any, omega: float) -> list[AbstractEffect]:
-        """Points for a fit to start from that make a joint like ``system`` ring at ``omega`` [rad/s]; none where it cannot."""
+    def ringing(cls, system: Any, omega: float, size: float = 0.0) -> list[AbstractEffect]:
+        """Points for a fit to start from that make a joint like ``system`` ring at ``omega`` [rad/s]; none where it cannot.
+
+        ``size`` is that of the law as a multiple of its guess, 0 where it is too weak to shift its own tone.
+        """
         return []
 
     @classmethod

@@ -60,7 +60,7 @@ def test_a_link_is_proposed_at_a_frequency():
 @pytest.mark.slow
 def test_a_link_of_little_damping_between_two_guesses_is_promised(monkeypatch):
     record, rig, _, _ = hidden("flexible_link", "chirp", 5, J2=0.12, k2=0.12 * 200.0**2, c2=2 * 0.008 * 0.12 * 200.0)
-    record = noisier(record, 10.0, 6)
+    record = noisier(record, 4.0, 6)
     base, free, _ = base_system(record, "joint", rig.inertia)
     bench = Workbench(record, base, free, 0.2)
     alone = bench.fit({}, bench.fit({}, patience=60), tied=True, patience=60)

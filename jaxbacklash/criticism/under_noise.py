@@ -9,7 +9,8 @@ no new compilation.
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 
 import equinox as eqx
 import numpy as np
@@ -19,6 +20,7 @@ from ..fitting.search import TIES
 from ..fitting.shooting import Prediction, Problem, Unknowns
 from ..mechanics import AbstractEffect
 from ..records import Record
+from ..system import System
 from .along_motion import motion, own_torques
 from .quick_look import QuickLook
 from .ringing import ringing
@@ -57,13 +59,16 @@ def promises(
     still, predicted = answer(np.zeros(()))
     own = model_record(bench, predicted)
     along = motion(own)
-    heard = [shape for omega in ringing(bench.record, own) for shape in law.ringing(trial.system, omega)][: len(guesses)]
+    tones = [omega for omega in ringing(bench.record, own) if law.ringing(trial.system, omega)]
+    shapes = [law.ringing(trial.system, omega)[0] for omega in tones]
     # As many at a time as there are guesses: for so many a program is at hand.
-    groups = [(heard + guesses)[: len(guesses)], guesses] if heard else [guesses]
+    groups = [(shapes + guesses)[: len(guesses)], guesses] if shapes else [guesses]
     torques = [own_torques(group, trial.system, along) for group in groups]
-    tried = [*zip(heard, torques[0]), *zip(guesses, torques[-1])]
+    # What a law is of a size, and its torque of size 1.
+    heard: list[Callable[[float], AbstractEffect]] = [partial(_rung, law, trial.system, omega) for omega in tones]
+    tried = [*zip(heard, torques[0]), *zip((guess.scaled for guess in guesses), torques[-1])]
     found: list[tuple[float, AbstractEffect]] = []
-    for guess, torque in tried:
+    for of_size, torque in tried:
         torque = np.interp(edges, along.t, torque)
         once = answer(SHARE * torque)[0] - still
         if problem.system.slides and not once < LOST * still:
@@ -80,8 +85,12 @@ def promises(
         # Where the answer is no parabola, noise is too small for a trajectory to bend so little: it promises nothing.
         further = slope * FURTHER * SHARE + 0.5 * curvature * (FURTHER * SHARE) ** 2
         if abs(answer(FURTHER * SHARE * torque)[0] - still - further) < BENT * abs(further):
-            found.append((fall, guess.scaled(float(np.clip(-slope / curvature, WEAKEST, STRONGEST)))))
+            found.append((fall, of_size(float(np.clip(-slope / curvature, WEAKEST, STRONGEST)))))
     return sorted(found, key=lambda promise: -promise[0])
+
+
+def _rung(law: type[AbstractEffect], system: System, omega: float, size: float) -> AbstractEffect:
+    return law.ringing(system, omega, size)[0]
 
 
 def panel_edges(bench: Workbench) -> np.ndarray:
