@@ -105,12 +105,12 @@ class AbstractEffect(eqx.Module):
         return [cls(**strengths)]
 
     @classmethod
-    def ringing(cls, system: Any, omega: float, size: float = 0.0) -> list[AbstractEffect]:
-        """Points for a fit to start from that make a joint like ``system`` ring at ``omega`` [rad/s]; none where it cannot.
+    def ringing(cls, system: Any, omega: float, size: float = 0.0) -> AbstractEffect | None:
+        """Point for a fit to start from that makes a joint like ``system`` ring at ``omega`` [rad/s]; None where it cannot.
 
         ``size`` is that of the law as a multiple of its guess, 0 where it is too weak to shift its own tone.
         """
-        return []
+        return None
 
     @classmethod
     def in_place_of(cls, other: AbstractEffect, motion: Any | None = None) -> list[AbstractEffect]:

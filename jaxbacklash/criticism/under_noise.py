@@ -11,6 +11,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Callable, Iterator
 from functools import partial
+from typing import Any
 
 import equinox as eqx
 import numpy as np
@@ -20,7 +21,6 @@ from ..fitting.search import TIES
 from ..fitting.shooting import Prediction, Problem, Unknowns
 from ..mechanics import AbstractEffect
 from ..records import Record
-from ..system import System
 from .along_motion import motion, own_torques
 from .quick_look import QuickLook
 from .ringing import ringing
@@ -59,13 +59,12 @@ def promises(
     still, predicted = answer(np.zeros(()))
     own = model_record(bench, predicted)
     along = motion(own)
-    tones = [omega for omega in ringing(bench.record, own) if law.ringing(trial.system, omega)]
-    shapes = [law.ringing(trial.system, omega)[0] for omega in tones]
+    tones = {omega: shape for omega in ringing(bench.record, own) if (shape := law.ringing(trial.system, omega)) is not None}
     # As many at a time as there are guesses: for so many a program is at hand.
-    groups = [(shapes + guesses)[: len(guesses)], guesses] if shapes else [guesses]
+    groups = [[*tones.values(), *guesses][: len(guesses)], guesses] if tones else [guesses]
     torques = [own_torques(group, trial.system, along) for group in groups]
     # What a law is of a size, and its torque of size 1.
-    heard: list[Callable[[float], AbstractEffect]] = [partial(_rung, law, trial.system, omega) for omega in tones]
+    heard: list[Callable[[float], Any]] = [partial(law.ringing, trial.system, omega) for omega in tones]
     tried = [*zip(heard, torques[0]), *zip((guess.scaled for guess in guesses), torques[-1])]
     found: list[tuple[float, AbstractEffect]] = []
     for of_size, torque in tried:
@@ -87,10 +86,6 @@ def promises(
         if abs(answer(FURTHER * SHARE * torque)[0] - still - further) < BENT * abs(further):
             found.append((fall, of_size(float(np.clip(-slope / curvature, WEAKEST, STRONGEST)))))
     return sorted(found, key=lambda promise: -promise[0])
-
-
-def _rung(law: type[AbstractEffect], system: System, omega: float, size: float) -> AbstractEffect:
-    return law.ringing(system, omega, size)[0]
 
 
 def panel_edges(bench: Workbench) -> np.ndarray:

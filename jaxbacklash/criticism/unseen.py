@@ -124,8 +124,10 @@ class Unseen(Tried):
         found: dict[str, Trial] = {}
         for c in others:
             simpler = sorted(current.names.intersection(self.bench.laws[c.name].absorbs))
-            untold = bool(simpler) and explained(current) and current.tied and self.untold(current, simpler[0], c.name)
-            if not simpler or (explained(current) and not untold):
+            if not simpler:
+                continue
+            untold = explained(current) and current.tied and self.untold(current, simpler[0], c.name)
+            if explained(current) and not untold:
                 continue
             found[c.name] = self.add(current, c)
             # Nor does the quick look then know its shape, and from a wrong one a search may not come back.

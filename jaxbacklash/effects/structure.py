@@ -36,11 +36,11 @@ class FlexibleLink(AbstractEffect):
         return [cls(small, small * w * w, 0.02 * small * w) for w in own * np.geomspace(LOWEST, HIGHEST, STEPS)]
 
     @classmethod
-    def ringing(cls, system: Any, omega: float, size: float = 0.0) -> list[AbstractEffect]:
+    def ringing(cls, system: Any, omega: float, size: float = 0.0) -> FlexibleLink:
         # Two inertias on one spring swing faster than the smaller one alone. More damped than most: heard in a wider band.
         own = omega / np.sqrt(1.0 + 0.1 * size)
         link = 0.1 * float(system.inertia)
-        return [cls(link, link * own**2, 0.1 * link * own).scaled(size or 1.0)]
+        return cls(link, link * own**2, 0.1 * link * own).scaled(size or 1.0)
 
     def scaled(self, factor: float) -> FlexibleLink:
         # A smaller inertia that swings at the same frequency, as well damped.
