@@ -90,3 +90,19 @@ def test_windows_that_stay_apart_call_for_free_ones_only_where_those_say_nothing
     monkeypatch.setattr(search, "finished", lambda trial, tried: {})
     search.forward(current, [Step(current, None, (), ())], 0.1)
     assert bool(loosened) != ruled_out
+
+
+def test_free_windows_that_rule_a_law_out_are_no_evidence_against_one_trajectory(monkeypatch):
+    """They have starts to choose: their sum of squares is far below that of any trajectory, the right one's too."""
+    current = Model(frozenset({"coulomb_joint"}), cost=200.0)
+    apart, tied = Model(frozenset({"dahl"}), cost=90.0, tied=False), Model(frozenset({"gravity"}), cost=201.0)
+    search = Search(Bench())
+    search.known[current.names, False] = Model(current.names, cost=50.0, tied=False)
+    search.known[apart.names, False] = apart
+    monkeypatch.setattr("jaxbacklash.criticism.search.rank", lambda *_: [])
+    monkeypatch.setattr("jaxbacklash.criticism.search.may_join", lambda *_: [])
+    monkeypatch.setattr(search, "attempts", lambda trial, ranking: {"dahl": apart, "gravity": tied})
+    monkeypatch.setattr(search, "finished", lambda trial, tried: tried)
+    steps = search.forward(current, [Step(current, None, (), ())], 0.1)
+    assert [s.trial for s in steps] == [current]
+    assert set(steps[0].evidence) == {"gravity"}

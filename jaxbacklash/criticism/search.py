@@ -335,6 +335,9 @@ class Search(Unseen):
                 others = self.attempts(loose, ranking)
                 if self.helps(loose, others) or not self.helps(current, {n: t for n, t in tried.items() if t.tied}):
                     current, tried = loose, others
+            if current.tied and not self.runs_through(current):
+                # Free windows have starts to choose, which one trajectory has not: what they rule out is no match for it.
+                tried = {n: t for n, t in tried.items() if t.tied}
             # Two of a family may each look better from the other, one with free windows and one without: none is kept twice.
             kept = {s.trial.names for s in steps}
             tried = self.finished(current, {n: t for n, t in tried.items() if t.names not in kept})
