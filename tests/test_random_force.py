@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.signal import lfilter
 
 import jaxbacklash as jb
-from jaxbacklash.signals import is_smooth
+from jaxbacklash.signals import is_smooth, noise_level
 
 RATE, SIGMA = 500.0, 1e-5  # Hz, m
 MASS, DAMPING, STIFFNESS, CUBIC = 2.0, 6.0, 8000.0, 3.0e7
@@ -30,6 +31,14 @@ def test_white_noise_is_not_smooth_and_a_sine_in_noise_is():
     white = rng.standard_normal(t.size)
     assert not is_smooth(t, white, 0.1)
     assert is_smooth(t, 10.0 * np.sin(20.0 * t) + white, 0.1)
+
+
+def test_a_resonance_that_few_knots_cannot_follow_is_no_noise():
+    """Ten samples a period: a criterion that rises at first, since a few more knots follow nothing, is not to be believed."""
+    rng = np.random.default_rng(3)
+    pole = 0.985 * np.exp(2j * np.pi / 10.0)
+    y = lfilter([1.0], [1.0, -2.0 * pole.real, abs(pole) ** 2], rng.standard_normal(8000))
+    assert noise_level(np.arange(y.size) / 610.0, y) < 0.1 * np.std(y)
 
 
 @pytest.mark.slow

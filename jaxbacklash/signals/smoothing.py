@@ -17,6 +17,8 @@ from scipy.linalg import cho_solve_banded, cholesky_banded
 DEGREE = 5
 NEGLIGIBLE = 1e-6
 """Share of a signal's size below which a misfit of the spline does not count."""
+FOLLOWED = 0.5
+"""Share of a signal's size that a spline may miss and still follow it."""
 KEPT = 200_000
 """Samples up to which factored equations are kept for the next signal: those of longer records would fill the memory."""
 
@@ -100,7 +102,7 @@ def choose_intervals(t: np.ndarray, values: np.ndarray, window: float, *, least:
     dt = (t[-1] - t[0]) / (t.size - 1)
     most = max(least, int(window / (2.0 * dt)))
     candidates = sorted({min(most, max(least, round(least * 1.26**k))) for k in range(24)})
-    best, lowest, rising = candidates[0], np.inf, 0
+    best, lowest, rising, followed = candidates[0], np.inf, 0, False
     # A signal without noise would ask for ever more knots; a millionth of its size is as good as exact.
     floor = (NEGLIGIBLE * np.std(values)) ** 2
     for intervals in candidates:
@@ -110,9 +112,11 @@ def choose_intervals(t: np.ndarray, values: np.ndarray, window: float, *, least:
             break
         criterion = t.size * np.log(max(fitted.noise**2 * free / t.size + floor, 1e-300)) + 2.0 * fitted.coefficients.size
         rising = rising + 1 if criterion > lowest else 0
+        followed = followed or fitted.noise < FOLLOWED * np.std(values)
         if criterion < lowest:
             best, lowest = intervals, criterion
-        if rising == 3:
+        # Where so few knots follow nothing yet, a criterion that rises tells nothing of more of them.
+        if rising == 3 and followed:
             break
     return int(min(most, np.ceil(1.5 * best)))
 
