@@ -328,16 +328,16 @@ class Search(Unseen):
             promised = {c.name for c in ranking if c.gain > SURE * demanded(self.bench)}
             parted = any(not t.tied and not self.ruled_out(current, t.names) for t in tried.values())
             lost = parted or any(t.cost > current.cost and n in promised for n, t in tried.items() if t.tied)
-            if lost and current.tied and not self.runs_through(current):
-                # A trajectory in one piece has stuck on the way to a clear gain: this stage is judged on free windows, unless
-                # they show nothing and another candidate went all the way.
-                loose = self.loosened(current)
-                others = self.attempts(loose, ranking)
-                if self.helps(loose, others) or not self.helps(current, {n: t for n, t in tried.items() if t.tied}):
-                    current, tried = loose, others
             if current.tied and not self.runs_through(current):
                 # Free windows have starts to choose, which one trajectory has not: what they rule out is no match for it.
                 tried = {n: t for n, t in tried.items() if t.tied}
+                if lost:
+                    # A trajectory in one piece has stuck on the way to a clear gain: this stage is judged on free windows, unless
+                    # they show nothing and another candidate went all the way.
+                    loose = self.loosened(current)
+                    others = self.attempts(loose, ranking)
+                    if self.helps(loose, others) or not self.helps(current, tried):
+                        current, tried = loose, others
             # Two of a family may each look better from the other, one with free windows and one without: none is kept twice.
             kept = {s.trial.names for s in steps}
             tried = self.finished(current, {n: t for n, t in tried.items() if t.names not in kept})
