@@ -15,16 +15,13 @@ from typing import Any, NamedTuple, Protocol
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 
-from .panels import Cubic, Scalar, State, _add, _first_crossing, _side
+from .panels import SHARES, WEIGHTS, Cubic, Scalar, State, _add, _first_crossing, _side
 
 SOON = 1e-4
 """Share of a panel within which an event counts as met: a fraction of a microsecond."""
 STILL = 1e-9
 """Speed that counts as rest [rad/s]."""
-SHARES, WEIGHTS = np.array([0.5, 0.5, 1.0]), np.array([2.0, 2.0, 1.0])
-"""Stages 2 to 4 of the classical Runge-Kutta step: share of the step at which they are taken, and weight."""
 
 
 class Sliding(Protocol):

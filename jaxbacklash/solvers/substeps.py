@@ -11,7 +11,10 @@ import jax
 import jax.numpy as jnp
 
 from .dry import advance_dry
-from .panels import Cubic, advance, advance_smooth
+from .panels import Cubic, advance, advance_in_turns, advance_smooth, advance_smooth_in_turns
+
+MANY = 4
+"""Laws, some with internal states, above which a panel is advanced in loops."""
 
 
 def one_panel(system: Any, t: Any, state: Any, a: Any, b: Any, h: Any, located: bool) -> Any:
@@ -22,11 +25,12 @@ def one_panel(system: Any, t: Any, state: Any, a: Any, b: Any, h: Any, located: 
     def drive_at(tau: Any) -> Any:
         return type(a)(base.at(tau), base.slope(tau), force.at(tau))
 
+    in_turns = len(state) > 2 and len(system.effects) > MANY
     if located and system.slides:
         return advance_dry(system, t, state, drive_at, base, h)
     if located:
-        return advance(system, t, state, drive_at, base, h)
-    return advance_smooth(system, t, state, drive_at, h)
+        return (advance_in_turns if in_turns else advance)(system, t, state, drive_at, base, h)
+    return (advance_smooth_in_turns if in_turns else advance_smooth)(system, t, state, drive_at, h)
 
 
 def run_panels(
