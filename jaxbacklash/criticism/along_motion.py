@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..compiled import kept_jit
+from ..fitting.force import force_edges
 from ..mechanics import AbstractEffect, Drive, canonical_name
 from ..parameters import ravel, unravel
 from ..records import Record
@@ -55,7 +56,7 @@ def motion(record: Record, window: float = 0.1) -> Motion:
     x, dx = smooth(record.channels.get("x", zero))
     seen, rate = smooth(record.channels[record.observed_name])
     y, dy = (seen + x, rate + dx) if record.observed_name == "z" else (seen, rate)
-    return Motion(t, y, dy, x, dx, record.channels.get("F", zero))
+    return Motion(t, y, dy, x, dx, force_edges(record, 1))
 
 
 def torques(system: System, seeds: np.ndarray, m: Motion) -> tuple[np.ndarray, np.ndarray]:

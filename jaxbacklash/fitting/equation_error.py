@@ -20,6 +20,7 @@ from ..mechanics import AbstractEffect, Instant
 from ..pointwise import exerted
 from ..records import Record
 from ..signals import Bump, choose_intervals, fit_spline
+from .force import force_edges
 
 
 @dataclass(frozen=True)
@@ -149,7 +150,7 @@ class _WeakForm:
         self.stiffness = 1.0
         self._speeds: tuple[np.ndarray, np.ndarray] | None = None
         self.acceleration = self._bump.against(y, 2)
-        self.force = self._bump.against(channels.get("F", zero))
+        self.force = self._bump.against(force_edges(record, 1))
 
     def damping(self) -> np.ndarray:
         return -self._bump.against(self.z, 1)

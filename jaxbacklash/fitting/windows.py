@@ -21,6 +21,7 @@ from ..errors import BadInput
 from ..records import Record
 from ..signals import DEGREE, NEGLIGIBLE, choose_intervals, fit_spline, is_smooth, knots, noise_level, noise_of_differences
 from .chunks import CHUNK
+from .force import force_edges
 
 Array = Any
 LONGEST_PANEL = 2.0e-3
@@ -216,8 +217,8 @@ def _cut_one(record: Record, length: int, every: int, intervals: int, driver: st
         part["coefficients"] = _rows(fitted.coefficients, rows, intervals)
         if driver == "x":
             motion = fitted(record.t)
-    exact = np.zeros(samples) if driver == "F" else record.channels.get("F", np.zeros(samples))
-    part["force"] = _force_edges(exact, rows, length, every)
+    force = np.zeros(1) if driver == "F" else force_edges(record, every)
+    part["force"] = _force_rows(force, rows, length * every)
     part["starts"] = _starts(record, motion, observed, length, t0)
     return part
 
@@ -255,10 +256,9 @@ def _rows(values: np.ndarray, rows: int, length: int) -> np.ndarray:
     return padded.reshape(rows, length)
 
 
-def _force_edges(force: np.ndarray, rows: int, length: int, every: int) -> np.ndarray:
-    # Straight lines between samples: a measured force may jump, and a curve through a jump overshoots.
-    values = np.interp(np.arange(rows * length * every + 1) / every, np.arange(force.size), force)
-    return values[(length * every * np.arange(rows))[:, None] + np.arange(length * every + 1)]
+def _force_rows(edges: np.ndarray, rows: int, panels: int) -> np.ndarray:
+    held = np.pad(edges, (0, max(rows * panels + 1 - edges.size, 0)), mode="edge")
+    return held[(panels * np.arange(rows))[:, None] + np.arange(panels + 1)]
 
 
 def _starts(record: Record, motion: np.ndarray, observed: np.ndarray, length: int, t0: np.ndarray) -> np.ndarray:

@@ -6,6 +6,8 @@ from .analytic import carrier as carrier
 from .analytic import denoised as denoised
 from .analytic import low_passed as low_passed
 from .bandwidth import highest_frequency as highest_frequency
+from .between import edges_between as edges_between
+from .between import way_between as way_between
 from .bump import Bump as Bump
 from .cycles import CycleSpline as CycleSpline
 from .cycles import SlowCurve as SlowCurve

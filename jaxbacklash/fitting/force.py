@@ -1,0 +1,43 @@
+"""The force of a record between its samples."""
+
+from __future__ import annotations
+
+import warnings
+from functools import lru_cache
+
+import numpy as np
+
+from ..records import Record
+from ..signals import edges_between, is_smooth, way_between
+
+SMOOTH_OVER = 0.1
+"""Length over which a force is smooth or not [s]."""
+SAID = {"held": "held from each sample to the next", "curved": "a smooth curve through its samples"}
+
+
+def way(record: Record) -> str:
+    """How a record's force goes on between its samples, one of `jaxbacklash.signals.between.WAYS`.
+
+    Asked of a rough force alone, on a link whose base is at rest and whose motion is seen; all else is straight. Warns
+    (UserWarning) once where it is not straight.
+    """
+    channels = record.channels
+    if "F" not in channels or "x" in channels or record.observed_name == "T" or is_smooth(record.t, channels["F"], SMOOTH_OVER):
+        return "straight"
+    where = f"{record.path}: " if record.path else ""
+    return _way(where, channels["F"].tobytes(), channels[record.observed_name].tobytes())
+
+
+@lru_cache(maxsize=8)
+def _way(where: str, force: bytes, motion: bytes) -> str:
+    found = way_between(np.frombuffer(force), np.frombuffer(motion))
+    if found != "straight":
+        warnings.warn(f"{where}the force F is taken as {SAID[found]}, which is how the motion answers to it", stacklevel=3)
+    return found
+
+
+def force_edges(record: Record, every: int) -> np.ndarray:
+    """The force at ``every`` points a sample, ((N - 1) every + 1,), straight in between; zero where none is in the record."""
+    if "F" not in record.channels:
+        return np.zeros((record.samples - 1) * every + 1)
+    return edges_between(record.channels["F"], every, way(record))
