@@ -22,15 +22,18 @@ def way(record: Record) -> str:
     (UserWarning) once where it is not straight.
     """
     channels = record.channels
-    if "F" not in channels or "x" in channels or record.observed_name == "T" or is_smooth(record.t, channels["F"], SMOOTH_OVER):
+    if "F" not in channels or "x" in channels or record.observed_name == "T":
         return "straight"
     where = f"{record.path}: " if record.path else ""
-    return _way(where, channels["F"].tobytes(), channels[record.observed_name].tobytes())
+    return _way(where, record.dt, channels["F"].tobytes(), channels[record.observed_name].tobytes())
 
 
 @lru_cache(maxsize=8)
-def _way(where: str, force: bytes, motion: bytes) -> str:
-    found = way_between(np.frombuffer(force), np.frombuffer(motion))
+def _way(where: str, dt: float, force: bytes, motion: bytes) -> str:
+    push = np.frombuffer(force)
+    if is_smooth(dt * np.arange(push.size), push, SMOOTH_OVER):
+        return "straight"
+    found = way_between(push, np.frombuffer(motion))
     if found != "straight":
         warnings.warn(f"{where}the force F is taken as {SAID[found]}, which is how the motion answers to it", stacklevel=3)
     return found
