@@ -55,11 +55,12 @@ class QuickLook:
         names = list(specs(system))
         seeds = np.zeros((len(free), len(names)))
         seeds[np.arange(len(free)), [names.index(n) for n in free]] = 1.0
-        return torques(system, seeds, self.motion)
+        torque, columns = torques(system, seeds, self.motion)
+        return _led(torque), _led(columns)
 
     def column(self, effect: AbstractEffect, system: System) -> np.ndarray:
         """Torque of an effect on the measured motion, under the bump (R,)."""
-        return self.average(own_torques([effect], system, self.motion)[0])
+        return self.average(_led(own_torques([effect], system, self.motion)[0]))
 
     def choose(
         self, system: System, free: tuple[str, ...], variants: list[AbstractEffect], keep: int = 1
@@ -101,10 +102,7 @@ class QuickLook:
         left = left if known is None else left - known
         name, told = canonical_name(variants[0]), np.stack([ravel(v) for v in variants])
         if name not in self._columns or not np.array_equal(self._columns[name][0], told):
-            own = own_torques(variants, system, self.motion)
-            # A shape whose own motion runs away speaks for nothing.
-            own = np.where(np.max(np.abs(own), axis=1, keepdims=True) < RUNAWAY, own, 0.0)
-            self._columns[name] = told, self.average(own).T
+            self._columns[name] = told, self.average(_led(own_torques(variants, system, self.motion))).T
         columns = self._columns[name][1]
         white = whitener(left - by @ np.linalg.lstsq(by, left, rcond=None)[0])
         left, by, columns = white(left), white(by), white(columns)
@@ -118,6 +116,11 @@ class QuickLook:
     def average(self, torque: np.ndarray) -> np.ndarray:
         """One or several signals (..., N) under the bump (..., R)."""
         return self._bump.against(torque)
+
+
+def _led(torques: np.ndarray) -> np.ndarray:
+    """Torques along the motion (..., N), none of a law whose own motion runs away when it is led along: it speaks for nothing."""
+    return np.where(np.max(np.abs(torques), axis=-1, keepdims=True) < RUNAWAY, torques, 0.0)
 
 
 def fixed_sign(effect: AbstractEffect) -> bool:

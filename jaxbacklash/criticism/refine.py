@@ -14,6 +14,7 @@ from ..errors import BadInput
 from ..fitting.equation_error import Start
 from ..fitting.estimates import judge
 from ..fitting.fit import ABSOLUTE, SCORE_WINDOW, Fit, prepare
+from ..fitting.force import tell_way
 from ..fitting.score import Score, score
 from ..fitting.search import TIES, inverse_information, silent
 from ..fitting.setup import base_system, first_guess, free_names
@@ -117,6 +118,7 @@ def refine(
     require_double_precision("refine")
     record = oriented(record)
     heldout = None if heldout is None else oriented(heldout)
+    tell_way([record] if heldout is None else [record, heldout])
     if heldout is not None and heldout.kind != record.kind:
         raise BadInput(f"{heldout.path}: is a {heldout.kind} record, {record.path} a {record.kind} record; wanted two of a kind")
     clock = {"start": time.perf_counter()}

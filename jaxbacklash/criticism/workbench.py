@@ -15,6 +15,7 @@ import equinox as eqx
 import numpy as np
 
 from ..fitting.fit import prepare
+from ..fitting.handed_on import handed_on
 from ..fitting.held import held, search_held
 from ..fitting.levenberg import Levenberg, Minimum, minimise
 from ..fitting.search import ADEQUATE, LOOSE, NEAR, TIES, freedom, tie_windows
@@ -196,7 +197,8 @@ class Workbench:
             ):
                 problem, solution, _ = tie_windows(problem, unknowns, TIES[1], limit=patience, near=COMPARED)
         else:
-            solution = minimise(problem, unknowns, Levenberg(limit=patience, atol=near, rtol=ENOUGH))
+            how = Levenberg(limit=patience, atol=near, rtol=ENOUGH)
+            solution = handed_on(problem, minimise(problem, unknowns, how), how)
         return self._trial(problem, solution, frozenset(effects), free, tied, patience)
 
     def fit_softly(self, trial: Trial, patience: int, way: int) -> Trial:

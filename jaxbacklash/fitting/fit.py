@@ -17,6 +17,7 @@ from ..records import Record, oriented
 from ..system import System
 from .equation_error import Start
 from .estimates import Estimate, judge
+from .force import tell_way
 from .profile import with_profiles
 from .score import Score, score
 from .search import search, silent
@@ -124,6 +125,7 @@ def fit(
     """
     require_double_precision("fit")
     chosen = tuple(oriented(r) for r in ((records,) if isinstance(records, Record) else records))
+    tell_way(chosen)
     clock = {"start": time.perf_counter()}
     progress("reading noise and a first estimate", 0.02)
     start: Start | None = None

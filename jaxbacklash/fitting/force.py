@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterable
 from functools import lru_cache
 
 import numpy as np
@@ -18,25 +19,27 @@ SAID = {"held": "held from each sample to the next", "curved": "a smooth curve t
 def way(record: Record) -> str:
     """How a record's force goes on between its samples, one of `jaxbacklash.signals.between.WAYS`.
 
-    Asked of a rough force alone, on a link whose base is at rest and whose motion is seen; all else is straight. Warns
-    (UserWarning) once where it is not straight.
+    Asked of a rough force alone, on a link whose base is at rest and whose motion is seen; all else is straight.
     """
     channels = record.channels
     if "F" not in channels or "x" in channels or record.observed_name == "T":
         return "straight"
-    where = f"{record.path}: " if record.path else ""
-    return _way(where, record.dt, channels["F"].tobytes(), channels[record.observed_name].tobytes())
+    return _way(record.dt, channels["F"].tobytes(), channels[record.observed_name].tobytes())
 
 
 @lru_cache(maxsize=8)
-def _way(where: str, dt: float, force: bytes, motion: bytes) -> str:
+def _way(dt: float, force: bytes, motion: bytes) -> str:
     push = np.frombuffer(force)
-    if is_smooth(dt * np.arange(push.size), push, SMOOTH_OVER):
-        return "straight"
-    found = way_between(push, np.frombuffer(motion))
-    if found != "straight":
-        warnings.warn(f"{where}the force F is taken as {SAID[found]}, which is how the motion answers to it", stacklevel=3)
-    return found
+    smooth = is_smooth(dt * np.arange(push.size), push, SMOOTH_OVER)
+    return "straight" if smooth else way_between(push, np.frombuffer(motion))
+
+
+def tell_way(records: Iterable[Record]) -> None:
+    """Warn (UserWarning) of each record whose force is not taken as straight between its samples."""
+    for record in records:
+        if (found := way(record)) != "straight":
+            where = f"{record.path}: " if record.path else ""
+            warnings.warn(f"{where}the force F is taken as {SAID[found]}, which is how the motion answers to it", stacklevel=3)
 
 
 def force_edges(record: Record, every: int) -> np.ndarray:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..errors import NoAnswer
 from ..system import System
+from .handed_on import handed_on
 from .held import correlation, held, search_held
 from .levenberg import Levenberg, Minimum, minimise
 from .setup import first_guess, make_problem
@@ -114,6 +115,7 @@ def _from_starts(
             whole = eqx.tree_at(lambda u: u.theta, guess, best.value.theta)
             best = minimise(problem, whole, Levenberg(atol=NEAR))
             steps += int(best.stats["steps"])
+        best = handed_on(problem, best, Levenberg(atol=NEAR))
         if np.isfinite(best.stats["cost"]):
             return best, steps, agreeing, len(arrived)
     raise NoAnswer(NOWHERE)
