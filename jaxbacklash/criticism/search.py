@@ -14,13 +14,13 @@ from .evidence import (
     AS_WELL,
     NOISE_FLOOR,
     SURE,
-    UNEXPLAINED,
     acts_anyway,
     at_a_bound,
     demanded,
     excess,
     explained,
     gain,
+    leaves_a_rest,
     led_on,
     measures_only,
     shapeless,
@@ -98,7 +98,7 @@ class Search(Unseen):
         free windows start anew, and no trajectory can follow, soaks up what is missing, whatever that is.
         """
         steps = list(steps)
-        while len(steps) > 1 and excess(steps[-1].trial) > UNEXPLAINED:
+        while len(steps) > 1 and leaves_a_rest(steps[-1].trial):
             law = self.bench.laws.get(steps[-1].added or "")
             before, after = (excess(t) for t in self.alike(steps[-2].trial, steps[-1].trial))
             least = MOST if law is not None and measures_only(law) else LITTLE
@@ -457,7 +457,7 @@ class Search(Unseen):
 
     def nibbles(self, before: Trial, after: Trial, least: float) -> bool:
         """Whether an addition takes away only little of a misfit of which a clear rest remains."""
-        return excess(after) > UNEXPLAINED and excess(before) - excess(after) < least * excess(before)
+        return leaves_a_rest(after) and excess(before) - excess(after) < least * excess(before)
 
     def prune(self, trial: Trial, spare: str | None = None) -> tuple[Trial, tuple[str, ...]]:
         """The model without the effects it no longer needs."""

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from ..fitting import Fit
-from .evidence import at_a_limit
+from .evidence import at_a_limit, most_of_noise
 from .unnamed import Unnamed
 from .workbench import Trial
 
-NEAR_NOISE, SIGMAS = 1.01, 3.0
-"""Root of the reduced chi-square up to which what is left counts as noise, since the noise itself is estimated, and how many
-standard deviations of that root may come on top: in 80 records of right models it did not exceed 1.013."""
 LITTLE_MORE = 1.1
 """A misfit below this looks like noise, so that a verdict against it says what noise would leave."""
 WORSE = 1.1
@@ -29,13 +25,6 @@ class Verdict:
     @property
     def word(self) -> str:
         return "complete" if self.complete else "incomplete"
-
-
-def most_of_noise(trial: Trial) -> float:
-    r"""The largest root of the reduced chi-square that noise may leave: its standard deviation is :math:`1/\sqrt{2\nu}`, with
-    :math:`\nu` degrees of freedom."""
-    freedom = 2.0 * trial.cost / trial.misfit**2
-    return NEAR_NOISE + SIGMAS / math.sqrt(2.0 * max(freedom, 1.0))
 
 
 def judge_rest(final: Trial, fits: list[Fit], beyond: Unnamed | None = None) -> Verdict:
