@@ -20,7 +20,7 @@ ROUNDS = 4
 
 
 def handed_on(problem: Problem, found: Minimum, how: Levenberg) -> Minimum:
-    """A fit of free windows, searched once more from better starts as long as a few of its windows hold most of the misfit.
+    """A fit of free windows, searched once more from better starts as long as a few of its windows hold much of the misfit.
 
     Parameters
     ----------
