@@ -47,6 +47,7 @@ def test_which_windows_have_stuck(problem, far, stuck):
 def test_a_model_that_fails_throughout_has_no_stuck_windows(problem):
     assert not stuck_windows(problem, ended(10.0 * np.ones(WINDOWS), 1.0)).size
     assert not stuck_windows(problem, ended(np.full(WINDOWS, np.nan), np.nan)).size
+    assert not stuck_windows(problem, ended(np.full(WINDOWS, 1e200), np.inf)).size
 
 
 def test_they_go_on_from_the_window_before_as_long_as_that_helps(problem, monkeypatch):

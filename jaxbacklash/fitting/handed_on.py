@@ -45,7 +45,8 @@ def stuck_windows(problem: Problem, found: Minimum) -> np.ndarray:
     """Windows that have stuck where the one before has not, none where they are not what matters."""
     w = problem.windows
     missed = (np.asarray(found.stats["predicted"].motion) - np.asarray(w.measured)) * np.asarray(w.weight)
-    squares = np.sum(missed**2, axis=1)
+    with np.errstate(over="ignore", invalid="ignore"):  # a motion that ran away is no exception
+        squares = np.sum(missed**2, axis=1)
     full = np.flatnonzero(np.sum(np.asarray(w.weight) > 0.0, axis=1) > 0)
     if not full.size or not np.all(np.isfinite(squares[full])):
         return np.zeros(0, int)
