@@ -17,9 +17,10 @@ AS_WELL = 0.98
 """Share of the best candidate's gain that counts as doing as well: then the simpler law is taken."""
 SURE = 4.0
 """A gain of so many times what is demanded is no accident: a fit that does not show it has stuck, an effect that has it acts."""
-NEAR_NOISE, SIGMAS = 1.01, 3.0
-"""Root of the reduced chi-square up to which what is left counts as noise, since the noise itself is estimated, and how many
-standard deviations of that root may come on top: in 80 records of right models it did not exceed 1.013."""
+NEAR_NOISE, SIGMAS, CHANCE = 1.01, 3.0, 2.0
+"""Root of the reduced chi-square up to which what is left counts as noise, since the noise itself is estimated; how many standard
+deviations of that root may come on top for a verdict (in 80 records of right models it did not exceed 1.013); and how many as
+long as there is more to add, when a small misfit that something else makes is still to be told from chance."""
 
 
 def demanded(bench: Workbench) -> float:
@@ -42,16 +43,16 @@ def excess(trial: Trial) -> float:
     return max(trial.misfit**2 - 1.0, 0.0)
 
 
-def most_of_noise(trial: Trial) -> float:
+def most_of_noise(trial: Trial, sigmas: float = SIGMAS) -> float:
     r"""The largest root of the reduced chi-square that noise may leave: its standard deviation is :math:`1/\sqrt{2\nu}`, with
     :math:`\nu` degrees of freedom."""
     freedom = 2.0 * trial.cost / trial.misfit**2
-    return NEAR_NOISE + SIGMAS / math.sqrt(2.0 * max(freedom, 1.0))
+    return NEAR_NOISE + sigmas / math.sqrt(2.0 * max(freedom, 1.0))
 
 
 def leaves_a_rest(trial: Trial) -> bool:
     """Whether a model leaves clearly more than noise."""
-    return trial.misfit > most_of_noise(trial)
+    return trial.misfit > most_of_noise(trial, CHANCE)
 
 
 def measures_only(law: type[AbstractEffect]) -> bool:
