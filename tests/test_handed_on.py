@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import jaxbacklash as jb
 from jaxbacklash.fitting import handed_on as module
 from jaxbacklash.fitting.handed_on import handed_on, stuck_windows
 from jaxbacklash.fitting.levenberg import Levenberg, Minimum
@@ -18,7 +19,7 @@ def ended(missed, cost):
     motion = np.broadcast_to(np.asarray(missed, float)[:, None], (WINDOWS, SAMPLES))
     end = np.stack([np.arange(WINDOWS), -np.arange(WINDOWS)], axis=1).astype(float)
     value = Unknowns(np.zeros(3), np.full((2, WINDOWS), 99.0), np.zeros((WINDOWS, 0)))
-    return Minimum(value, {"cost": np.asarray(cost), "predicted": Prediction(motion, np.zeros((WINDOWS, 0)), end)})
+    return Minimum(value, {"cost": np.asarray(cost), "steps": 7, "predicted": Prediction(motion, np.zeros((WINDOWS, 0)), end)})
 
 
 @pytest.fixture
@@ -59,9 +60,39 @@ def test_they_go_on_from_the_window_before_as_long_as_that_helps(problem, monkey
         return left.pop(0)
 
     monkeypatch.setattr(module, "minimise", minimise)
-    assert float(handed_on(problem, ended(missing(5, 6), 100.0), Levenberg()).stats["cost"]) == 50.0
+    found, taken = handed_on(problem, ended(missing(5, 6), 100.0), Levenberg())
+    assert (float(found.stats["cost"]), taken) == (50.0, 14)
     assert [b[:, k].tolist() for b, k in zip(begun, (5, 6))] == [[4.0, -4.0], [5.0, -5.0]]
     assert all(np.sum(b != 99.0) == 2 for b in begun)
     left.append(ended(missing(5), 101.0))
     first = ended(missing(5), 100.0)
-    assert handed_on(problem, first, Levenberg()) is first
+    assert handed_on(problem, first, Levenberg()) == (first, 7)
+
+
+@pytest.mark.slow
+def test_a_play_shaken_by_a_rough_force_needs_no_effect():
+    """As wide as the motion: at first some windows start on its wrong side. The force is held, 64 Runge-Kutta steps a sample."""
+    rng, rate, samples = np.random.default_rng([91, 12]), 610.0, 8000
+    mass, damping, stiffness, half = 1.7237564, 11.458323, 63304.606, 0.056266521
+    push = 4500.0 * rng.standard_normal(samples)
+    h, y, v, path = 1.0 / (64.0 * rate), 0.0, 0.0, []
+
+    def pull(y, v, now):
+        return (now - damping * v - stiffness * (y - min(max(y, -half), half))) / mass
+
+    for now in push:
+        path.append(y)
+        for _ in range(64):
+            a = pull(y, v, now)
+            b = pull(y + 0.5 * h * v, v + 0.5 * h * a, now)
+            c = pull(y + 0.5 * h * (v + 0.5 * h * a), v + 0.5 * h * b, now)
+            d = pull(y + h * (v + 0.5 * h * b), v + h * c, now)
+            y, v = y + h * v + h * h / 6.0 * (a + b + c), v + h / 6.0 * (a + 2.0 * (b + c) + d)
+    seen = np.array(path) + 1e-3 * np.std(path) * rng.standard_normal(samples)
+    record = jb.Record(np.arange(samples) / rate, {"F": push, "y": seen}, confirmed=frozenset("tFy"))
+    with pytest.warns(UserWarning, match="held from each sample to the next"):
+        found = jb.refine(record, translational=True)
+    assert found.effects == ()
+    assert found.verdict.complete
+    play = found.stages[-1].fit.parameters["backlash"]
+    assert play.value == pytest.approx(2.0 * half, abs=4.0 * play.stderr)

@@ -82,6 +82,14 @@ def test_a_short_record_or_a_motion_lost_in_noise_says_nothing():
     assert way_between(*answered("held", 0.1, 0, samples=600)) == "straight"
     values, y = answered("held", 0.1, 0, noise=30.0)
     assert way_between(values, y) == "straight"
+    assert way_between(np.ones(8000), y) == "straight"
+
+
+def test_a_record_without_noise_or_at_rest_for_long_is_read_too():
+    values, y = answered("held", 0.1, 0, noise=0.0)
+    assert way_between(values, y) == "held"
+    values[:4000], y[:4000] = 0.0, 0.0
+    assert way_between(values, y) == "held"
 
 
 @pytest.mark.parametrize("way", ["held", "curved"])

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 from ..fitting.search import ADEQUATE, silent
 from ..mechanics import AbstractEffect
-from .brought_on import without_what_brought_on
 from .candidates import Candidate, may_join, rank
 from .evidence import (
     AS_WELL,
@@ -61,26 +60,26 @@ class Search(Unseen):
         self.based, self.likely = based, likely
         self.level: dict[tuple[str, ...], Trial] = {}
 
-    def base(self, begun: Trial | None = None) -> Trial:
-        """The joint alone, fitted on from where it stood if it was fitted before."""
+    def base(self) -> Trial:
+        """The joint alone."""
         self.progress("fitting the joint alone", 0.1)
-        found = self.settle(self._keep(self.bench.fit({}, begun, patience=WHOLE)))
+        found = self.settle(self._keep(self.bench.fit({}, patience=WHOLE)))
         if self.bench.outright and not adequate(found):
             # A link that is not seen may be put anew at the start of every window; what it cannot do is jump between them.
             found = self._keep(self.bench.fit({}, found, through=True))
         return found
 
-    def run(self, begun: Trial | None = None) -> list[Step]:
+    def run(self) -> list[Step]:
         """The whole search: the path from the joint alone to the model kept."""
-        base = self.base(begun)
+        base = self.base()
         self.based(base)
-        steps = without_what_brought_on(self, self.forward(base, [Step(base, None, (), ())], MUCH), MUCH, CLEAR)
+        steps = self.forward(base, [Step(base, None, (), ())], MUCH)
         final = steps[-1].trial
         if final.tied and final.misfit < 0.97:
             # A noise estimate cannot be right that exceeds what a model leaves: corners were taken for noise.
             self.bench.quieter(final.misfit)
             self.known.clear()
-            return self.run(steps[0].trial)
+            return self.run()
         if not explained(final) or self.glimpsed(self.trim(steps)[-1].trial):
             # What acts through a state of its own is tried before what explains a little here and there.
             steps = self.with_hidden(steps)

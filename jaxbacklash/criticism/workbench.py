@@ -198,7 +198,7 @@ class Workbench:
                 problem, solution, _ = tie_windows(problem, unknowns, TIES[1], limit=patience, near=COMPARED)
         else:
             how = Levenberg(limit=patience, atol=near, rtol=ENOUGH)
-            solution = handed_on(problem, minimise(problem, unknowns, how), how)
+            solution, _ = handed_on(problem, minimise(problem, unknowns, how), how)
         return self._trial(problem, solution, frozenset(effects), free, tied, patience)
 
     def fit_softly(self, trial: Trial, patience: int, way: int) -> Trial:

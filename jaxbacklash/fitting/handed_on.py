@@ -19,8 +19,9 @@ and is an exception as long as they are no more than that share of all."""
 ROUNDS = 4
 
 
-def handed_on(problem: Problem, found: Minimum, how: Levenberg) -> Minimum:
-    """A fit of free windows, searched once more from better starts as long as a few of its windows hold much of the misfit.
+def handed_on(problem: Problem, found: Minimum, how: Levenberg) -> tuple[Minimum, int]:
+    """A fit of free windows, searched once more from better starts as long as a few of its windows hold much of the misfit, and
+    the steps that took.
 
     Parameters
     ----------
@@ -28,6 +29,7 @@ def handed_on(problem: Problem, found: Minimum, how: Levenberg) -> Minimum:
     found : where the search ended
     how : how it went, and goes on
     """
+    taken = 0
     for _ in range(ROUNDS):
         stuck = stuck_windows(problem, found)
         if not stuck.size:
@@ -35,10 +37,11 @@ def handed_on(problem: Problem, found: Minimum, how: Levenberg) -> Minimum:
         starts = np.array(found.value.starts)
         starts[:, stuck] = np.asarray(found.stats["predicted"].end)[stuck - 1].T
         again = minimise(problem, eqx.tree_at(lambda u: u.starts, found.value, starts), how)
+        taken += int(again.stats["steps"])
         if not float(again.stats["cost"]) < float(found.stats["cost"]):
             break
         found = again
-    return found
+    return found, taken
 
 
 def stuck_windows(problem: Problem, found: Minimum) -> np.ndarray:

@@ -115,7 +115,8 @@ def _from_starts(
             whole = eqx.tree_at(lambda u: u.theta, guess, best.value.theta)
             best = minimise(problem, whole, Levenberg(atol=NEAR))
             steps += int(best.stats["steps"])
-        best = handed_on(problem, best, Levenberg(atol=NEAR))
+        best, taken = handed_on(problem, best, Levenberg(atol=NEAR))
+        steps += taken
         if np.isfinite(best.stats["cost"]):
             return best, steps, agreeing, len(arrived)
     raise NoAnswer(NOWHERE)

@@ -29,6 +29,9 @@ HEARD, HIGHEST = 30.0, 0.42
 """A frequency counts where the motion's power is so many times that near the highest ones, and below this share of the rate."""
 LAGS = np.arange(-1.0, 4.1, 0.25)
 """Lags of the motion that are tried [samples]."""
+ROUNDS, LEFT = 12, 0.03
+"""How often the frequencies are weighed anew by what is left there, and the share of the median that this counts as at least:
+without noise, the few that fit best would soon be all that is fitted."""
 CLEARLY = 0.1
 """Gain in log-likelihood a complex value (a frequency in a window) above which one way is likelier than another."""
 
@@ -82,8 +85,8 @@ class _Seen:
     def __init__(self, force: np.ndarray, motion: np.ndarray) -> None:
         self.count = 0
         starts = np.arange(0, force.size - LENGTH + 1, LENGTH // 2)
-        size = float(np.std(motion))
-        if starts.size < LEAST or not size or not np.any(force):
+        size, push = float(np.std(motion)), float(np.std(force))
+        if starts.size < LEAST or not size or not push:
             return
         at = starts[:: -(-starts.size // MOST), None] + np.arange(LENGTH)
         share = np.fft.rfftfreq(LENGTH)  # of the sampling rate
@@ -104,7 +107,7 @@ class _Seen:
         heard = (power > HEARD * floor) & (share < HIGHEST) & (np.arange(share.size) > 1)
         laws = [under(v) for v in (y**2, y**3, np.abs(y), np.sign(np.gradient(y)))]
         self.share, self.omega = share[heard], omega[heard]
-        self.force = under(force / np.std(force))[:, heard]
+        self.force = under(force / push)[:, heard]
         self.terms = np.stack([curved, tilted, flat, *laws])[:, :, heard]
         self.count = self.force.size
 
@@ -115,11 +118,12 @@ class _Seen:
             seen = np.sinc(self.share) * np.exp(-0.5j * self.omega)
         terms = self.terms * (np.exp(1j * self.omega * lag) / seen)
         left: Any = np.ones(self.share.size)
-        for _ in range(4):
+        for _ in range(ROUNDS):
             weighted = terms / left
             gram = np.einsum("iwf,jwf->ij", weighted.conj(), terms).real
             pull = np.einsum("iwf,wf->i", weighted.conj(), self.force).real
-            scale = np.sqrt(np.diag(gram))
+            scale = np.sqrt(np.maximum(np.diag(gram), 1e-300))  # a law may find nothing to act on
             found = np.linalg.lstsq(gram / scale / scale[:, None], pull / scale, rcond=1e-12)[0] / scale
             left = np.mean(np.abs(self.force - np.einsum("i,iwf->wf", found, terms)) ** 2, axis=0)
+            left = np.maximum(left, LEFT * np.median(left) + 1e-300)
         return -float(np.sum(np.log(left))) * self.force.shape[0]
