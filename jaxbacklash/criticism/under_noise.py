@@ -174,7 +174,7 @@ def model_record(bench: Workbench, predicted: Prediction) -> Record:
     record = bench.record
     seen = np.asarray(bench.windows.weight) > 0.0
     channels: dict[str, np.ndarray] = {}
-    for name, values in ((record.observed_name, predicted.motion), ("x", predicted.input)):
+    for name, values in ((record.observed_name, predicted.motion), ("x", predicted.input[:, : bench.windows.samples])):
         if name in record.channels and np.shape(values) == seen.shape and not (name == "x" and bench.windows.by_force):
             values = np.asarray(values)[seen][: record.samples]
             channels[name] = np.concatenate([values, record.channels[name][values.size :]])

@@ -126,5 +126,5 @@ def _spline_residual(w: Any) -> np.ndarray:
     own = np.asarray(w.coefficients)
     following = np.concatenate([own[1:], np.zeros_like(own[:1])])
     local = np.concatenate([own, following[:, : w.basis.shape[2] - w.intervals]], axis=1)
-    base = local @ np.asarray(w.basis)[0, : -1 : w.every].T
+    base = local @ np.asarray(w.shown).T
     return (base - np.asarray(w.input)) * np.asarray(w.input_weight)

@@ -89,7 +89,7 @@ class Blocks(eqx.Module):
 
 
 class Prediction(eqx.Module):
-    """What one window predicts: ``motion`` (M,) measured channel, ``input`` (M,) spline at the samples, ``end`` (n,)."""
+    """What one window predicts: ``motion`` (M,) measured channel, ``input`` (R,) spline as `Windows.shown`, ``end`` (n,)."""
 
     motion: Array
     input: Array
@@ -130,7 +130,7 @@ def predict(problem: Problem, theta: Array, start: Array, local: Array, t0: Arra
     w = problem.windows
     path = trajectory(problem, theta, start, local, t0, force)
     motion = jax.vmap(problem.rebuild(theta).output)(path.times, path.states, path.drive)
-    measured = w.basis[0, : -1 : w.every] @ local if w.intervals else jnp.zeros((0,))
+    measured = w.shown @ local if w.intervals else jnp.zeros((0,))
     return Prediction(motion, measured, jnp.stack(path.end))
 
 
@@ -149,9 +149,7 @@ def _predict(problem: Problem, theta: Array, starts: Array, local: Array) -> tup
     samples = jax.tree.map(lambda v: v[:, : -1 : w.every], at)
     times = w.t0[:, None] + w.panel * w.every * jnp.arange(w.samples)
     motion = jax.vmap(jax.vmap(system.output))(times, kept, samples)
-    measured = local @ w.basis[0, : -1 : w.every].T
-    if not local.shape[1]:
-        measured = jnp.zeros((w.count, 0))
+    measured = local @ w.shown.T if local.shape[1] else jnp.zeros((w.count, 0))
     return Prediction(motion, measured, end.T), states, u, du
 
 
@@ -195,7 +193,7 @@ def local_coefficients(coefficients: Array) -> Array:
 
 
 def residuals(problem: Problem, unknowns: Unknowns, predicted: Prediction | None = None) -> tuple[Array, Array, Array]:
-    """Motion (W, M), input (W, M or 0) and tie (W, n) residuals in units of the noise."""
+    """Motion (W, M), input (W, R or 0) and tie (W, n) residuals in units of the noise."""
     p = predictions(problem, unknowns) if predicted is None else predicted
     following = jnp.concatenate([unknowns.starts[:, 1:], unknowns.starts[:, :1]], axis=1).T
     return _residuals(problem.windows, p, following, tie_weights(problem, unknowns.starts.shape[0]))
@@ -306,9 +304,11 @@ def _meet(shared: tuple[Problem, Array], lead: tuple[Window, Shot]) -> Met:
     slope = jnp.einsum("wir,wr->wi", weighted, jnp.concatenate([shot.motion, shot.tie], axis=1))
     if own.local.shape[1]:
         # The input's own samples meet its coefficients alone.
-        seen = w.basis[0, : -1 : w.every]
-        scaled = seen * w.input_weight[:, :, None]
+        scaled = w.shown * w.input_weight[:, :, None]
         by_itself = jnp.einsum("wri,wrj->wij", scaled, scaled)
+        # What holds its knots is no sample, and would damp every step of it.
+        firm = jnp.sum(scaled[:, w.samples :] ** 2, axis=1)
+        tied = tied + jnp.pad(firm, ((0, 0), (n, q)))
         gram = gram + jnp.pad(by_itself, ((0, 0), (n, q), (n, q)))
         slope = slope + jnp.pad(jnp.einsum("wri,wr->wi", scaled, shot.input), ((0, 0), (n, q)))
     seen = jnp.diagonal(gram, axis1=1, axis2=2) - tied

@@ -24,8 +24,14 @@ from .chunks import CHUNK
 from .force import force_edges
 
 Array = Any
+LEAST_INTERVALS = 8
+"""Spline intervals that a window has room for at least; those that its input does not need are joined."""
+LOOKED_AT = 20_000
+"""Samples of an input at which the spline it needs is chosen."""
 LONGEST_PANEL = 2.0e-3
 """Longest integration panel [s]; a panel is two Runge-Kutta steps."""
+HELD = 30.0
+"""How many times more firmly than by the samples a spline is held to have no corner at a knot that its input does not need."""
 LEAST_ROOM = 512
 """Windows that the smallest compiled program has room for."""
 
@@ -35,7 +41,8 @@ class Windows(eqx.Module):
     rough force that is taken as exact, straight between its samples).
 
     ``t0`` (W,) start times [s]; ``measured`` (W, M); ``weight`` (W, M), 1/noise or 0 where there is no sample;
-    ``tie`` (W,), 1 where the window runs on into the next; ``input`` (W, M) measured input and ``input_weight`` (W, M);
+    ``tie`` (W,), 1 where the window runs on into the next; ``input`` (W, R) measured input and ``input_weight`` (W, R), R = M
+    samples and m - 1 knots where its spline is to have no corner; ``shown`` (R, m+5) what the coefficients come to there;
     ``force`` (W, P+1) exact force at panel edges; ``coefficients`` (W, m) start of the spline; ``basis`` (6, P+1, m+5)
     the splines and their derivatives at panel edges; ``starts`` (2, W) position and speed of the link from the smoothed data;
     ``drop`` (2,) how sharply ends tie to starts [1/rad, s/rad]; ``used`` how many windows, the first ones, hold
@@ -52,6 +59,7 @@ class Windows(eqx.Module):
     force: Array
     coefficients: Array
     basis: Array
+    shown: Array
     starts: Array
     drop: Array
     panel: Array
@@ -134,10 +142,13 @@ def cut(
     every = max(1, int(np.ceil(dt / longest_panel - 1e-9)))
     driver = _driver(records, length * dt)
     intervals = 0
+    needed = 0
     if driver is not None:
-        intervals = max(choose_intervals(r.t, r.channels[driver], length * dt) for r in records)
-        intervals = -(-max(intervals, least) // 4) * 4  # a step of four keeps the number of compiled shapes small
-    parts = [_cut_one(r, length, every, intervals, driver) for r in records]
+        needed = max(choose_intervals(r.t, r.channels[driver], length * dt, least=1, longest=LOOKED_AT) for r in records)
+        # A step of four keeps the number of compiled shapes small.
+        intervals = -(-max(needed, LEAST_INTERVALS, least) // 4) * 4
+        needed = next(n for n in range(needed, intervals + 1) if intervals % n == 0)
+    parts = [_cut_one(r, length, every, intervals, needed, driver) for r in records]
     total = bucket(sum(p["measured"].shape[0] for p in parts))
     stacked: dict[str, np.ndarray] = {}
     for key in parts[0]:
@@ -151,7 +162,8 @@ def cut(
     starts = np.ascontiguousarray(stacked.pop("starts").T)
     panel = dt / every
     windows = Windows(
-        basis=_basis(length, every, intervals, panel), drop=drop, panel=np.asarray(panel), every=every, starts=starts,
+        basis=_basis(length, every, intervals, panel), shown=_shown(length, intervals, needed), drop=drop,
+        panel=np.asarray(panel), every=every, starts=starts,
         used=np.asarray(sum(counts)), told=np.mean([p["told"] for p in parts]), by_force=driver == "F", **stacked,
     )  # fmt: skip
     layout = Layout(
@@ -187,7 +199,24 @@ def _basis(length: int, every: int, intervals: int, panel: float) -> np.ndarray:
     return np.stack([splines(inside, nu=order) for order in range(DEGREE + 1)])
 
 
-def _cut_one(record: Record, length: int, every: int, intervals: int, driver: str | None) -> dict[str, Any]:
+def _shown(length: int, intervals: int, needed: int) -> np.ndarray:
+    """What a window's coefficients come to at its samples, and at the knots inside it the corners that are not to be.
+
+    With fewer knots than a window has room for, noise in the input has fewer ways into its rate: dry friction, which changes its
+    sign with that, is smeared by what the rate is wrong by, and read too large, at the expense of the damping.
+    """
+    if intervals == 0:
+        return np.zeros((0, 0))
+    corners = np.zeros((intervals - 1, intervals + DEGREE))
+    for row, own in enumerate(corners):
+        own[row : row + DEGREE + 2] = np.diff(np.eye(DEGREE + 2), DEGREE + 1, axis=0)[0]
+    finest = 2.0 * np.sin(0.5 * np.pi * needed / intervals)  # of what the needed knots can show, by one difference
+    return np.concatenate([_basis(length, 1, intervals, 1.0)[0, :-1], HELD / finest ** (DEGREE + 1) * corners])
+
+
+def _cut_one(
+    record: Record, length: int, every: int, intervals: int, needed: int, driver: str | None
+) -> dict[str, Any]:
     dt, samples = record.dt, record.samples
     count = -(-samples // length)
     rows = count + 1
@@ -205,16 +234,19 @@ def _cut_one(record: Record, length: int, every: int, intervals: int, driver: st
         "told": 1.0,
     }
     motion = np.zeros(samples)
-    part["input"] = part["input_weight"] = np.zeros((rows, length if driver else 0))
+    part["input"] = part["input_weight"] = np.zeros((rows, 0))
     part["coefficients"] = np.zeros((rows, intervals))
     if driver is not None:
         values = record.channels[driver]
-        fitted = fit_spline(record.t, values, record.t[0], length * dt / intervals)
+        fitted = fit_spline(record.t, values, record.t[0], length * dt / needed)
         part["input_noise"] = max(fitted.noise, NEGLIGIBLE * float(np.std(values)))
         part["told"] = (fitted.noise / part["input_noise"]) ** 2 if part["input_noise"] > 0.0 else 1.0
-        part["input"] = _rows(values, rows, length)
-        part["input_weight"] = _rows(np.full(samples, 1.0 / part["input_noise"]), rows, length)
-        part["coefficients"] = _rows(fitted.coefficients, rows, intervals)
+        smooth = np.arange(1, intervals) * needed % intervals != 0
+        held = np.outer(np.arange(rows) < count, smooth)
+        seen = _rows(np.ones(samples), rows, length)
+        part["input"] = np.pad(_rows(values, rows, length), [(0, 0), (0, intervals - 1)])
+        part["input_weight"] = np.concatenate([seen, held], axis=1) / part["input_noise"]
+        part["coefficients"] = _rows(fitted.refined(intervals // needed), rows, intervals)
         if driver == "x":
             motion = fitted(record.t)
     force = np.zeros(1) if driver == "F" else force_edges(record, every)

@@ -36,6 +36,16 @@ class SmoothMotion:
         """Value or derivative of the given order at times ``t`` [s]."""
         return BSpline(knots(self.t0, self.spacing, self.coefficients.size), self.coefficients, DEGREE)(t, nu=order)
 
+    def refined(self, parts: int) -> np.ndarray:
+        """Coefficients of the same spline with every interval divided into ``parts``; the first ones are of the same start."""
+        mask = np.ones(1)
+        for _ in range(DEGREE + 1):
+            mask = np.convolve(mask, np.ones(parts))
+        spread = np.zeros((self.coefficients.size - 1) * parts + 1)
+        spread[::parts] = self.coefficients
+        # A spline of the coarse knots is a sum of fine ones (two-scale relation), the first of which begins where it does.
+        return np.convolve(spread, mask / parts**DEGREE)[DEGREE * (parts - 1) :]
+
 
 def knots(t0: float, spacing: float, count: int) -> np.ndarray:
     """Equal knots that carry ``count`` quintic B-splines, the first interval in use beginning at ``t0``."""
@@ -93,7 +103,7 @@ def choose_intervals(t: np.ndarray, values: np.ndarray, window: float, *, least:
     ----------
     t, values : samples, shape (N,)
     window : length of a window [s]; the result divides it
-    least : smallest number of intervals allowed
+    least : smallest number of intervals looked at
     longest : at most this many samples from the middle of the record are looked at
     """
     if t.size > longest:
@@ -101,7 +111,7 @@ def choose_intervals(t: np.ndarray, values: np.ndarray, window: float, *, least:
         t, values = t[first : first + longest], values[first : first + longest]
     dt = (t[-1] - t[0]) / (t.size - 1)
     most = max(least, int(window / (2.0 * dt)))
-    candidates = sorted({min(most, max(least, round(least * 1.26**k))) for k in range(24)})
+    candidates = sorted({min(most, max(least, round(least * 1.26**k))) for k in range(32)})
     best, lowest, rising, followed = candidates[0], np.inf, 0, False
     # A signal without noise would ask for ever more knots; a millionth of its size is as good as exact.
     floor = (NEGLIGIBLE * np.std(values)) ** 2
