@@ -26,8 +26,6 @@ from .force import force_edges
 Array = Any
 LEAST_INTERVALS = 8
 """Spline intervals that a window has room for at least; those that its input does not need are joined."""
-LOOKED_AT = 20_000
-"""Samples of an input at which the spline it needs is chosen."""
 LONGEST_PANEL = 2.0e-3
 """Longest integration panel [s]; a panel is two Runge-Kutta steps."""
 HELD = 30.0
@@ -144,7 +142,7 @@ def cut(
     intervals = 0
     needed = 0
     if driver is not None:
-        needed = max(choose_intervals(r.t, r.channels[driver], length * dt, least=1, longest=LOOKED_AT) for r in records)
+        needed = max(choose_intervals(r.t, r.channels[driver], length * dt) for r in records)
         # A step of four keeps the number of compiled shapes small.
         intervals = -(-max(needed, LEAST_INTERVALS, least) // 4) * 4
         needed = next(n for n in range(needed, intervals + 1) if intervals % n == 0)

@@ -93,7 +93,7 @@ def _least_squares(samples: int, first: float, spacing: float) -> tuple[Any, Any
     return design, transposed, cholesky_banded(bands)
 
 
-def choose_intervals(t: np.ndarray, values: np.ndarray, window: float, *, least: int = DEGREE, longest: int = 12_000) -> int:
+def choose_intervals(t: np.ndarray, values: np.ndarray, window: float, *, longest: int = 20_000) -> int:
     """Knot intervals per window such that the spline does not smooth the signal away.
 
     The spacing with the smallest Akaike criterion fits best; half as many knots again are taken, since a smoother at
@@ -103,16 +103,15 @@ def choose_intervals(t: np.ndarray, values: np.ndarray, window: float, *, least:
     ----------
     t, values : samples, shape (N,)
     window : length of a window [s]; the result divides it
-    least : smallest number of intervals looked at
     longest : at most this many samples from the middle of the record are looked at
     """
     if t.size > longest:
         first = (t.size - longest) // 2
         t, values = t[first : first + longest], values[first : first + longest]
     dt = (t[-1] - t[0]) / (t.size - 1)
-    most = max(least, int(window / (2.0 * dt)))
-    candidates = sorted({min(most, max(least, round(least * 1.26**k))) for k in range(32)})
-    best, lowest, rising, followed = candidates[0], np.inf, 0, False
+    most = max(DEGREE, int(window / (2.0 * dt)))
+    candidates = sorted({min(most, round(1.26**k)) for k in range(32)})
+    best, lowest, bottom, rising, followed = candidates[0], np.inf, np.inf, 0, False
     # A signal without noise would ask for ever more knots; a millionth of its size is as good as exact.
     floor = (NEGLIGIBLE * np.std(values)) ** 2
     for intervals in candidates:
@@ -121,10 +120,12 @@ def choose_intervals(t: np.ndarray, values: np.ndarray, window: float, *, least:
         if free < 16:
             break
         criterion = t.size * np.log(max(fitted.noise**2 * free / t.size + floor, 1e-300)) + 2.0 * fitted.coefficients.size
-        rising = rising + 1 if criterion > lowest else 0
         followed = followed or fitted.noise < FOLLOWED * np.std(values)
         if criterion < lowest:
             best, lowest = intervals, criterion
+        if intervals >= DEGREE:  # below, a large slow motion may hide a small fast one
+            rising = rising + 1 if criterion > bottom else 0
+            bottom = min(bottom, criterion)
         # Where so few knots follow nothing yet, a criterion that rises tells nothing of more of them.
         if rising == 3 and followed:
             break
