@@ -36,10 +36,19 @@ def test_friction_that_gives_is_foreseen_where_it_is(effect, expected):
     assert (found if found is None else list(found)) == expected
 
 
+@pytest.mark.parametrize(("effect", "expected"), [("flexible_link", ["flexible_link"]), ("gravity", None), ("gap_spring", None)])
+def test_a_link_that_bends_is_foreseen_where_it_does(effect, expected):
+    record, rig, _, _ = hidden(effect, "chirp", 3, 8.0)
+    base, free, _ = base_system(record, "joint", rig.inertia)
+    bench = Workbench(record, base, free, 0.2)
+    found = Foresight(bench).bends(bench.fit({}))
+    assert (found if found is None else list(found)) == expected
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("effect", ["coulomb_joint", "dahl"])
-def test_a_search_with_friction_finds_its_programs_in_the_making(cache, monkeypatch, effect):
-    """The catalogue's program and that of friction are begun beside the search; the joint's own is needed at once."""
+@pytest.mark.parametrize("effect", ["coulomb_joint", "dahl", "flexible_link"])
+def test_a_search_finds_its_programs_in_the_making(cache, monkeypatch, effect):
+    """The catalogue's program and that of the effect are begun beside the search; the joint's own is needed at once."""
     levenberg._minimise.programs.clear()
     begun, find = [], compiled._find
 

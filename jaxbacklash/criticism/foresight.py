@@ -1,8 +1,8 @@
 """What a search will most likely ask the compiler for next, compiled beside it. It changes nothing but the time a cold run takes.
 
 A search waits for one program after the other while the compiler keeps a single core busy. The joint alone is fitted while the
-catalogue's program is in the making; what the joint leaves tells then whether dry friction, or friction that gives, will want a
-program of its own.
+catalogue's program is in the making; what the joint leaves tells then whether dry friction, friction that gives, or a link that
+bends will want a program of its own.
 """
 
 from __future__ import annotations
@@ -51,6 +51,8 @@ class Foresight:
                 self.aside.submit(self.sliding, base, law)
             else:
                 self.aside.submit(self.remembering, giving, base.system)
+        else:
+            self.aside.submit(self.bending, base)
         self.aside.submit(self.looks, base, law)
 
     def member(self, law: Member) -> None:
@@ -92,6 +94,22 @@ class Foresight:
             guesses = self.bench.laws[name].guesses(bare, quick.motion)
             if quick.share(bare, base.free, guesses) > share:
                 return {name: quick.choose(bare, base.free, guesses)[0]}
+        return None
+
+    def bending(self, base: Trial) -> None:
+        """The program of a law with states that is no friction, like that of a flexible link, where it is likely."""
+        if (likely := self.bends(base)) is not None:
+            self.remembering(likely, base.system)
+
+    def bends(self, base: Trial) -> dict[str, AbstractEffect] | None:
+        """A law with states that is no friction, by name, where a mere guess of it takes away a clear part of what the joint
+        alone leaves; where something else is missing, such guesses take away next to nothing."""
+        quick, bare = self.bench.quick, base.system
+        for name, law in self.bench.laws.items():
+            if law.states and not law.family:
+                guesses = law.guesses(bare, quick.motion)
+                if quick.share(bare, base.free, guesses) > CLEARLY:
+                    return {name: quick.choose(bare, base.free, guesses)[0]}
         return None
 
     def sliding(self, base: Trial, name: str) -> None:
