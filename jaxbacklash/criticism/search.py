@@ -403,13 +403,15 @@ class Search(Unseen):
         # Of those that promise about as much the simplest goes first: a richer one then need not be fitted to the end.
         level = sorted((c for c in telling if c.gain >= CLOSE * telling[0].gain), key=lambda c: c.parameters)
         for c in (*level, *telling[len(level) :]):
-            enough = tried and min(t.misfit for t in tried.values()) < NOISE_FLOOR
-            if enough and any(self.bench.laws[n].states and gain(current, t) > demanded(self.bench) for n, t in tried.items()):
+            # Free windows, with starts to choose, say nothing of what else one trajectory lacks.
+            alike = {n: t for n, t in tried.items() if t.tied or not current.tied}
+            enough = any(t.misfit < NOISE_FLOOR for t in alike.values())
+            if enough and any(self.bench.laws[n].states and gain(current, t) > demanded(self.bench) for n, t in alike.items()):
                 break  # it was ahead of every static one before it was fitted
             if c.gain < (CLOSE if enough else HOPEFUL) * telling[0].gain:
                 continue
             self.progress(f"trying {c.name}", 0.4)
-            rival = min(tried.values(), key=lambda t: t.criterion) if enough else None
+            rival = min(alike.values(), key=lambda t: t.criterion) if enough else None
             tried[c.name] = self.add(current, c, rival)
             if not looked and not explained(tried[c.name]) and not self.apart:
                 tried, looked = tried | self.memories(current, ranking), True
