@@ -106,3 +106,18 @@ def test_free_windows_that_rule_a_law_out_are_no_evidence_against_one_trajectory
     steps = search.forward(current, [Step(current, None, (), ())], 0.1)
     assert [s.trial for s in steps] == [current]
     assert set(steps[0].evidence) == {"gravity"}
+
+
+@pytest.mark.parametrize(("tied", "fitted"), [(True, False), (False, True)])
+def test_a_law_with_states_in_free_windows_stops_no_search_for_what_one_trajectory_lacks(tied, fitted):
+    """Friction's memory, in one piece or apart, leaves noise beside a trajectory: only in one piece it settles the matter."""
+    search, added = Search(Bench()), []
+    current = Model(frozenset(), cost=500.0, misfit=1.016)
+    search.may_help = lambda *_: True
+    search.memories = lambda *_: {"dahl": Model(frozenset({"dahl"}), cost=200.0, tied=tied)}
+    search.given = lambda *_: {}
+    search.richer = lambda *_: {}
+    search.add = lambda before, c, rival=None: added.append((c.name, rival)) or Model(frozenset({c.name}), cost=220.0)
+    ranking = [SimpleNamespace(name="gravity", gain=480.0, predicted=1.0, parameters=1, effect=Gravity())]
+    assert list(search.attempts(current, ranking)) == ["dahl", *(["gravity"] if fitted else [])]
+    assert added == ([("gravity", None)] if fitted else [])

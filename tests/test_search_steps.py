@@ -102,22 +102,6 @@ def test_of_those_that_promise_as_much_the_simplest_is_fitted_first():
     assert fitted == ["gravity", "preload", "drag"]
 
 
-@pytest.mark.parametrize(("tied", "fitted"), [(True, False), (False, True)])
-def test_a_law_with_states_in_free_windows_stops_no_search_for_what_one_trajectory_lacks(tied, fitted):
-    """Friction's memory, in one piece or apart, leaves noise beside a trajectory: only in one piece it settles the matter."""
-    search, added = Search(Bench()), []
-    current = Model(frozenset(), cost=500.0, misfit=1.016)
-    search.bench.laws["dahl"] = SimpleNamespace(states=("s",), absorbs=(), slides=False)
-    search.may_help = lambda *_: True
-    search.memories = lambda *_: {"dahl": Model(frozenset({"dahl"}), cost=200.0, tied=tied)}
-    search.given = lambda *_: {}
-    search.richer = lambda *_: {}
-    search.add = lambda before, c, rival=None: added.append((c.name, rival)) or Model(frozenset({c.name}), cost=220.0)
-    ranking = [SimpleNamespace(name="gravity", gain=480.0, predicted=1.0, parameters=1, effect=Gravity())]
-    assert list(search.attempts(current, ranking)) == ["dahl", *(["gravity"] if fitted else [])]
-    assert added == ([("gravity", None)] if fitted else [])
-
-
 def significant(monkeypatch, size):
     monkeypatch.setattr("jaxbacklash.criticism.search.significance", lambda trial, name: size)
     monkeypatch.setattr("jaxbacklash.criticism.tried.significance", lambda trial, name: size)
