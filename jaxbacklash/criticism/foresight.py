@@ -89,12 +89,7 @@ class Foresight:
     def giving(self, base: Trial, share: float) -> dict[str, AbstractEffect] | None:
         """The simplest law of friction that gives before it slips, by name, where a mere guess of it takes away more than that
         share already; friction that does not give leaves such guesses far behind."""
-        quick, bare = self.bench.quick, base.system
-        for name in (names[0] for names in families(self.bench).values()):
-            guesses = self.bench.laws[name].guesses(bare, quick.motion)
-            if quick.share(bare, base.free, guesses) > share:
-                return {name: quick.choose(bare, base.free, guesses)[0]}
-        return None
+        return self.guessed(base, [names[0] for names in families(self.bench).values()], share)
 
     def bending(self, base: Trial) -> None:
         """The program of a law with states that is no friction, like that of a flexible link, where it is likely."""
@@ -104,12 +99,15 @@ class Foresight:
     def bends(self, base: Trial) -> dict[str, AbstractEffect] | None:
         """A law with states that is no friction, by name, where a mere guess of it takes away a clear part of what the joint
         alone leaves; where something else is missing, such guesses take away next to nothing."""
+        return self.guessed(base, [n for n, law in self.bench.laws.items() if law.states and not law.family], CLEARLY)
+
+    def guessed(self, base: Trial, names: list[str], share: float) -> dict[str, AbstractEffect] | None:
+        """The likeliest guess of the first of some laws, by name, whose guesses take away more than a share of what is left."""
         quick, bare = self.bench.quick, base.system
-        for name, law in self.bench.laws.items():
-            if law.states and not law.family:
-                guesses = law.guesses(bare, quick.motion)
-                if quick.share(bare, base.free, guesses) > CLEARLY:
-                    return {name: quick.choose(bare, base.free, guesses)[0]}
+        for name in names:
+            guesses = self.bench.laws[name].guesses(bare, quick.motion)
+            if quick.share(bare, base.free, guesses) > share:
+                return {name: quick.choose(bare, base.free, guesses)[0]}
         return None
 
     def sliding(self, base: Trial, name: str) -> None:

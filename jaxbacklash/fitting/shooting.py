@@ -300,18 +300,17 @@ def _meet(shared: tuple[Problem, Array], lead: tuple[Window, Shot]) -> Met:
     tie_weight = tie_weights(problem, n)
     weighted = jnp.concatenate([motion_rows * w.weight[:, None, :], end_rows * tie_weight[:, None, :]], axis=2)
     gram = jnp.einsum("wir,wjr->wij", weighted, weighted)
-    tied = jnp.sum(weighted[:, :, -n:] ** 2, axis=2)
+    unseen = jnp.sum(weighted[:, :, -n:] ** 2, axis=2)  # what a tie adds is no sample, and would damp every step
     slope = jnp.einsum("wir,wr->wi", weighted, jnp.concatenate([shot.motion, shot.tie], axis=1))
     if own.local.shape[1]:
         # The input's own samples meet its coefficients alone.
         scaled = w.shown * w.input_weight[:, :, None]
         by_itself = jnp.einsum("wri,wrj->wij", scaled, scaled)
-        # What holds its knots is no sample, and would damp every step of it.
-        firm = jnp.sum(scaled[:, w.samples :] ** 2, axis=1)
-        tied = tied + jnp.pad(firm, ((0, 0), (n, q)))
+        # Nor is what holds its knots.
+        unseen = unseen + jnp.pad(jnp.sum(scaled[:, w.samples :] ** 2, axis=1), ((0, 0), (n, q)))
         gram = gram + jnp.pad(by_itself, ((0, 0), (n, q), (n, q)))
         slope = slope + jnp.pad(jnp.einsum("wri,wr->wi", scaled, shot.input), ((0, 0), (n, q)))
-    seen = jnp.diagonal(gram, axis1=1, axis2=2) - tied
+    seen = jnp.diagonal(gram, axis1=1, axis2=2) - unseen
     return Met(gram, slope, weighted[:, :, -n:], tie_weight, seen)
 
 
