@@ -22,6 +22,7 @@ SLOWER = 2.5  # than in the laboratory
 
 def seen(draw, *, rate=600.0, duration=16.0, noise=(1.2e-3, 7e-4)):
     """A slow joint with dry friction under a slow drive, heavily noisy; its rig, friction and record t, x, z."""
+    pytest.importorskip("numba", reason="the generator needs numba")
     rig, friction = Rig(3.2, 0.024, 14600.0, 15.6), {"coulomb_joint": {"Tc": 6.4}}
     drive = Excitation("stepped", base=SteppedSine(3.2, (0.032, 0.044, 0.046, 0.036)))
     truth = simulate_truth(rig, friction, drive, rate, duration)
