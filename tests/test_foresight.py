@@ -20,7 +20,7 @@ def test_friction_is_foreseen_where_it_is(effect, expected):
     record, rig, _, _ = hidden(effect, "chirp", 3, 8.0)
     base, free, _ = base_system(record, "joint", rig.inertia)
     bench = Workbench(record, base, free, 0.2)
-    assert Foresight(bench).friction(SimpleNamespace(system=base, free=free))[0] == expected
+    assert Foresight(bench).friction()[0] == expected
 
 
 GIVING = [("coulomb_joint", None), ("stribeck", None), ("dahl", ["dahl"]), ("lugre", ["dahl"])]
@@ -31,8 +31,8 @@ def test_friction_that_gives_is_foreseen_where_it_is(effect, expected):
     record, rig, _, _ = hidden(effect, "chirp", 3, 8.0)
     base, free, _ = base_system(record, "joint", rig.inertia)
     bench = Workbench(record, base, free, 0.2)
-    ahead, alone = Foresight(bench), SimpleNamespace(system=base, free=free)
-    found = ahead.giving(alone, ahead.friction(alone)[1])
+    ahead = Foresight(bench)
+    found = ahead.giving(ahead.friction()[1])
     assert (found if found is None else list(found)) == expected
 
 
@@ -41,14 +41,14 @@ def test_a_link_that_bends_is_foreseen_where_it_does(effect, expected):
     record, rig, _, _ = hidden(effect, "chirp", 3, 8.0)
     base, free, _ = base_system(record, "joint", rig.inertia)
     bench = Workbench(record, base, free, 0.2)
-    found = Foresight(bench).bends(bench.fit({}))
+    found = Foresight(bench).bends()
     assert (found if found is None else list(found)) == expected
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("effect", ["coulomb_joint", "dahl", "flexible_link"])
 def test_a_search_finds_its_programs_in_the_making(cache, monkeypatch, effect):
-    """The catalogue's program and that of the effect are begun beside the search; the joint's own is needed at once."""
+    """The catalogue's program and that of the effect are begun beside the search, and it asks for no other."""
     levenberg._minimise.programs.clear()
     begun, find = [], compiled._find
 

@@ -1,8 +1,8 @@
 """What a search will most likely ask the compiler for next, compiled beside it. It changes nothing but the time a cold run takes.
 
-A search waits for one program after the other while the compiler keeps a single core busy. The joint alone is fitted while the
-catalogue's program is in the making; what the joint leaves tells then whether dry friction, friction that gives, or a link that
-bends will want a program of its own.
+A search waits for one program after the other while the compiler keeps a single core busy. While the catalogue's program is in
+the making, with which the joint alone is fitted, a quick look at what the joint leaves at its first estimate tells whether dry
+friction, friction that gives, or a link that bends will want a program of its own.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from ..system import System
 from .along_motion import own_torques
 from .memories import Member, families
 from .tuning import apart, tune
-from .workbench import Trial, Workbench, strengths
+from .workbench import Workbench, strengths
 
 CLEARLY = 0.1
 """Share of what the joint alone leaves that dry friction takes away in the quick look where its program is made beforehand."""
 
 
 class Foresight:
-    """Compiles ahead of a search as a context; `after` is to be told the fit of the joint alone.
+    """Compiles ahead of a search as a context.
 
     What fails here fails again, and is told, where it is asked for.
     """
@@ -38,22 +38,24 @@ class Foresight:
 
     def __enter__(self) -> Foresight:
         self.aside.submit(self.catalogue)
+        self.aside.submit(self.likely)
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self.aside.shutdown(wait=True, cancel_futures=True)
 
-    def after(self, base: Trial) -> None:
-        """Go on from what the joint alone leaves."""
-        law, share = self.friction(base)
+    def likely(self) -> None:
+        """The program of the law that the joint's first estimate most likely misses, if any has one of its own; then the small
+        ones that the search will look with."""
+        law, share = self.friction()
         if law is not None:
-            if (giving := self.giving(base, share)) is None:
-                self.aside.submit(self.sliding, base, law)
+            if (giving := self.giving(share)) is None:
+                self.sliding(law)
             else:
-                self.aside.submit(self.remembering, giving, base.system)
-        else:
-            self.aside.submit(self.bending, base)
-        self.aside.submit(self.looks, base, law)
+                self.remembering(giving, self.bench.base)
+        elif (bending := self.bends()) is not None:
+            self.remembering(bending, self.bench.base)
+        self.looks(law)
 
     def member(self, law: Member) -> None:
         """Read the program of a model with a law that has a memory, if it is kept: it is the largest of all, and too dear to
@@ -71,7 +73,7 @@ class Foresight:
         problem, _ = self.bench.problem({}, self.bench.base, extra=[f"{name}.{n}" for n in strengths(self.bench.static[name]())])
         ready(problem, first_guess(problem), Levenberg())
 
-    def friction(self, base: Trial) -> tuple[str | None, float]:
+    def friction(self) -> tuple[str | None, float]:
         """The simplest dry friction in the port where a quick look at what the joint leaves makes it likely, and the share of
         that which it takes away."""
         dry = {name: law for name, law in self.bench.static.items() if law.slides}
@@ -81,52 +83,46 @@ class Foresight:
         shares = {}
         for name in simplest.values():
             rubbing, _ = apart(dry[name](), strengths(dry[name]()))
-            shares[name] = self.bench.quick.share(base.system, base.free, rubbing)
+            shares[name] = self.bench.quick.share(self.bench.base, self.bench.base_free, rubbing)
         likeliest = max(shares, key=lambda n: shares[n], default="")
         share = shares.get(likeliest, 0.0)
         return (likeliest if share > CLEARLY else None), share
 
-    def giving(self, base: Trial, share: float) -> dict[str, AbstractEffect] | None:
+    def giving(self, share: float) -> dict[str, AbstractEffect] | None:
         """The simplest law of friction that gives before it slips, by name, where a mere guess of it takes away more than that
         share already; friction that does not give leaves such guesses far behind."""
-        return self.guessed(base, [names[0] for names in families(self.bench).values()], share)
+        return self.guessed([names[0] for names in families(self.bench).values()], share)
 
-    def bending(self, base: Trial) -> None:
-        """The program of a law with states that is no friction, like that of a flexible link, where it is likely."""
-        if (likely := self.bends(base)) is not None:
-            self.remembering(likely, base.system)
-
-    def bends(self, base: Trial) -> dict[str, AbstractEffect] | None:
+    def bends(self) -> dict[str, AbstractEffect] | None:
         """A law with states that is no friction, by name, where a mere guess of it takes away a clear part of what the joint
         alone leaves; where something else is missing, such guesses take away next to nothing."""
-        return self.guessed(base, [n for n, law in self.bench.laws.items() if law.states and not law.family], CLEARLY)
+        return self.guessed([n for n, law in self.bench.laws.items() if law.states and not law.family], CLEARLY)
 
-    def guessed(self, base: Trial, names: list[str], share: float) -> dict[str, AbstractEffect] | None:
+    def guessed(self, names: list[str], share: float) -> dict[str, AbstractEffect] | None:
         """The likeliest guess of the first of some laws, by name, whose guesses take away more than a share of what is left."""
-        quick, bare = self.bench.quick, base.system
+        quick, bare, free = self.bench.quick, self.bench.base, self.bench.base_free
         for name in names:
             guesses = self.bench.laws[name].guesses(bare, quick.motion)
-            if quick.share(bare, base.free, guesses) > share:
-                return {name: quick.choose(bare, base.free, guesses)[0]}
+            if quick.share(bare, free, guesses) > share:
+                return {name: quick.choose(bare, free, guesses)[0]}
         return None
 
-    def sliding(self, base: Trial, name: str) -> None:
+    def sliding(self, name: str) -> None:
         """The catalogue's program with dry friction that can hold."""
-        problem, _ = self._one_more(base, name)
+        problem, _ = self._one_more(name)
         ready(problem, first_guess(problem), Levenberg())
 
-    def looks(self, base: Trial, friction: str | None) -> None:
+    def looks(self, friction: str | None) -> None:
         """The small programs of the quick look at a model with one effect, and at laws that have a memory."""
-        quick, laws = self.bench.quick, self.bench.laws
-        problem, free = self._one_more(base, friction or next(iter(self.bench.static)))
+        quick, laws, bare = self.bench.quick, self.bench.laws, self.bench.base
+        problem, free = self._one_more(friction or next(iter(self.bench.static)))
         quick.missing(with_values(problem.system, values(problem.system)), free)
         if friction is not None:
-            bare = System(base.system.inertia, base.system.contact, base.system.damper, {}, base.system.observed)
             for names in families(self.bench).values():
-                tune(quick, bare, base.free, laws[names[0]].guesses(bare, quick.motion))
+                tune(quick, bare, self.bench.base_free, laws[names[0]].guesses(bare, quick.motion))
         for law in laws.values():
             if law.states and not law.family:
-                own_torques(law.guesses(base.system, quick.motion), base.system, quick.motion)
+                own_torques(law.guesses(bare, quick.motion), bare, quick.motion)
 
-    def _one_more(self, base: Trial, name: str) -> tuple[Problem, tuple[str, ...]]:
-        return self.bench.problem({name: self.bench.laws[name].guesses(base.system)[0]}, base.system)
+    def _one_more(self, name: str) -> tuple[Problem, tuple[str, ...]]:
+        return self.bench.problem({name: self.bench.laws[name].guesses(self.bench.base)[0]}, self.bench.base)

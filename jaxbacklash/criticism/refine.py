@@ -133,7 +133,7 @@ def refine(
     judged = _Judge(bench, heldout, model, per_inertia, translational, start, settled)
     clock["prepare"] = time.perf_counter()
     with Foresight(bench) as ahead:
-        search = Search(bench, progress, ahead.after, ahead.member, judged.tell)
+        search = Search(bench, progress, ahead.member, judged.tell)
         steps = search.run()
     clock["search"] = time.perf_counter()
 

@@ -51,13 +51,11 @@ class Search(Unseen):
         self,
         bench: Workbench,
         progress: Callable[[str, float], None] = silent,
-        based: Callable[[Trial], object] = lambda base: None,
         seen: Callable[[Member], object] = lambda member: None,
         likely: Callable[[Trial], object] = lambda last: None,
     ) -> None:
         super().__init__(bench, progress, seen)
-        # Told the fit of the joint alone, and a model that leaves but noise.
-        self.based, self.likely = based, likely
+        self.likely = likely  # told a model that leaves but noise
         self.level: dict[tuple[str, ...], Trial] = {}
 
     def base(self) -> Trial:
@@ -72,7 +70,6 @@ class Search(Unseen):
     def run(self) -> list[Step]:
         """The whole search: the path from the joint alone to the model kept."""
         base = self.base()
-        self.based(base)
         steps = self.forward(base, [Step(base, None, (), ())], MUCH)
         final = steps[-1].trial
         if final.tied and final.misfit < 0.97:

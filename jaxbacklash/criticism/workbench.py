@@ -138,15 +138,13 @@ class Workbench:
 
         Parameters
         ----------
-        effects : by canonical name, as they are; every other static law is there at its null value, but for the joint alone
+        effects : by canonical name, as they are; every other static law is there at its null value
         joint : a system with the joint's values
         extra : further free parameters by name
         shapes : how absent laws are shaped, at their null values
         """
         shapes, extra = shapes or {}, tuple(extra)
-        # The joint alone is one model in every search: in a program of its own it costs a third of what it does in the catalogue.
-        absent = self.static if effects or extra else {}
-        quiet = {name: shapes.get(name, law()) for name, law in absent.items() if name not in effects}
+        quiet = {name: shapes.get(name, law()) for name, law in self.static.items() if name not in effects}
         # Friction that is only judged need not stick; friction in the model does, at its port alone.
         sliding = {e.port for e in effects.values() if e.slides}
         smoothed = tuple(port for port in ("joint", "ground") if port not in sliding)
