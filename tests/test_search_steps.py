@@ -1,5 +1,6 @@
 """What the search does where a fit has stuck, on models that are only numbers."""
 
+import math
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -29,7 +30,9 @@ class Bench:
     def grips(self, names):
         return False
 
-    def fit(self, effects, start=None, *, tied=False, patience=25, **_):
+    def fit(self, effects, start=None, *, tied=False, patience=25, **how):
+        if "joint" in how:  # begun again from the data: it comes to nothing
+            return Model(frozenset(effects), cost=math.inf)
         self.asked.append((frozenset(effects), tied))
         return self.answers.pop(0)
 

@@ -1,9 +1,12 @@
 """Dry friction spread over a range of speed: what it is, and where it leads a search that dry friction has stuck."""
 
+from types import SimpleNamespace
+
 import equinox as eqx
 import numpy as np
 import pytest
 
+from jaxbacklash.criticism.tried import Tried
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting.setup import base_system, first_guess
 from jaxbacklash.fitting.shooting import predictions
@@ -12,6 +15,7 @@ from jaxbacklash.fitting.windows import Windows
 from jaxbacklash.parameters import values
 
 from .hidden import hidden
+from .number_models import Model
 from .test_under_noise import noisier
 
 
@@ -58,3 +62,23 @@ def test_a_search_that_dry_friction_has_stuck_comes_loose(seed):
     loose = bench.fit_softly(tied, 60, 0)
     assert loose.misfit < 1.05
     assert loose.tied
+
+
+@pytest.mark.parametrize(("costs", "kept"), [((90.0, 80.0, 79.5), 80.0), ((100.5,), 100.0)])
+@pytest.mark.parametrize("slides", [True, False])
+def test_a_stuck_model_with_dry_friction_begins_again_from_the_data(costs, kept, slides):
+    """With its own parameters and nobody's windows, as long as that helps; others have no corners to stick at."""
+    names, begun = frozenset({"coulomb_ground"}), []
+    trial = Model(names, cost=100.0, system="where it stuck")
+
+    def fit(effects, start=None, *, joint, tied, patience):
+        assert (frozenset(effects), start, joint, tied) == (names, None, "where it stuck", True)
+        begun.append(costs[len(begun)])
+        return Model(names, cost=begun[-1], system=joint)
+
+    bench = SimpleNamespace(
+        laws={"coulomb_ground": SimpleNamespace(slides=slides)}, fit=fit, fit_softly=lambda trial, *_: trial,
+        effects=lambda trial: dict.fromkeys(trial.names), grips=lambda names: False,
+    )  # fmt: skip
+    found = Tried(bench).shaken(trial)
+    assert (found.cost, tuple(begun)) == ((kept, costs) if slides else (100.0, ()))

@@ -41,7 +41,7 @@ class Tried:
         self.bench, self.progress = bench, progress
         self.known: dict[tuple[frozenset[str], bool], Trial] = {}
         self.asked: set[frozenset[str]] = set()  # models that were to be tied with cuts
-        self.shook: set[frozenset[str]] = set()  # models whose dry friction was softened for a while
+        self.shook: set[frozenset[str]] = set()  # models that were begun again where dry friction may hold them
         self.behind: set[frozenset[str]] = set()  # models not fitted on, as a simpler law is ahead on free windows
         self.apart = False  # windows are left free, and laws with states out of it
 
@@ -229,12 +229,27 @@ class Tried:
         return any(rubs(self.bench.laws[name]) for name in trial.names)
 
     def shaken(self, trial: Trial) -> Trial:
-        """A tied model fitted `softly`, once in a search, if that finds something better."""
+        """A tied model fitted `softly` and begun `anew`, once in a search, if that finds something better."""
         if not trial.tied or trial.names in self.shook:
             return trial
         self.shook.add(trial.names)
-        found = self.softly(trial)
+        found = self.anew(self.softly(trial))
         return trial if found is trial else self._keep(found)
+
+    def anew(self, tied: Trial) -> Trial:
+        """A tied model with dry friction begun again from its own parameters and the data, as long as that helps.
+
+        It began with the windows of a model without one of its effects: where friction holds there, it may still hold.
+        """
+        if not self.dry(tied) or self.bench.grips(tied.names):
+            return tied
+        for _ in range(ROUNDS):
+            self.progress(f"beginning again: {', '.join(sorted(tied.names))}", 0.5)
+            again = self.bench.fit(self.bench.effects(tied), joint=tied.system, tied=True, patience=WHOLE)
+            if not tied.cost - again.cost > LOOSER:
+                break
+            tied = again
+        return tied
 
     def softly(self, tied: Trial) -> Trial:
         """A tied model with dry friction fitted by way of friction without corners, if that is better."""
