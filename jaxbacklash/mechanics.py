@@ -123,6 +123,11 @@ class AbstractEffect(eqx.Module):
         nulls = {n: s.null for n, s in described.items() if s.null is not None and not s.fixed}
         return dataclasses.replace(self, **{n: null + factor * (getattr(self, n) - null) for n, null in nulls.items()})
 
+    def loading(self, inertia: float) -> float:
+        """How many times the link's inertia [kg m^2] slow motion sees with this law: a model without it takes all torques for so
+        many times less than they are."""
+        return 1.0
+
     def torque(self, now: Instant) -> Scalar:
         """Torque on the link [N m], dry friction included (in the direction ``now`` knows, else smoothed)."""
         return jnp.zeros_like(now.y)

@@ -1,5 +1,7 @@
 """A law with internal states that the noise hides: what it promises beside a fitted trajectory, and whether that comes true."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 from scipy.interpolate import CubicHermiteSpline
@@ -13,12 +15,22 @@ from jaxbacklash.criticism.under_noise import blurred, own_rest, promises
 from jaxbacklash.criticism.unnamed import unnamed
 from jaxbacklash.criticism.unseen import GLIMPSED, KEPT
 from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.effects import FlexibleLink
 from jaxbacklash.fitting.levenberg import Levenberg, Minimum
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.records import Record
-from tests.hidden import NOISE, hidden, noisier
+from tests.hidden import NOISE, RATE, hidden, noisier
 
 LINK = {"J2": 0.4, "k2": 13400.0, "c2": 1.4}
+
+
+def simulated(rig, kind, seed, seconds):
+    """The true motion of a rig without effects under the excitation that `hidden` draws with this seed."""
+    from tests.independent.generator import make_excitation, make_rig, simulate_truth
+
+    rng = np.random.default_rng(seed)
+    make_rig(rng)
+    return simulate_truth(rig, {}, make_excitation(rng, kind, seconds), RATE, seconds)
 
 
 def trajectory(record, rig):
@@ -46,6 +58,35 @@ def test_a_flexible_link_under_ten_times_the_noise_is_promised_and_found():
     assert name == "flexible_link"
     assert 2.0 * (alone.cost - found.cost) > fall
     assert found.value["flexible_link.J2"] == pytest.approx(LINK["J2"], rel=0.1)
+
+
+@pytest.mark.slow
+def test_a_heavy_link_under_thirty_times_the_noise_is_found_whole():
+    """It has made the joint seem a fifth less stiff; the best that small steps lead to from there is a light and slow one."""
+    rig = hidden(None, "chirp", 4, 1.0)[1]
+    inertia, omega = 0.27 * rig.inertia, 2.7 * np.sqrt(rig.stiffness / rig.inertia)
+    link = {"J2": inertia, "k2": inertia * omega**2, "c2": 0.02 * inertia * omega}
+    record, rig, _, _ = hidden("flexible_link", "chirp", 4, **link)
+    bench, alone = trajectory(noisier(record, 30.0, 5), rig)
+    assert alone.value["stiffness"] < 0.85 * rig.stiffness
+    search = Search(bench)
+    _, found = search.unseen(alone, GLIMPSED * demanded(bench))
+    assert found.value["flexible_link.J2"] == pytest.approx(link["J2"], rel=0.2)
+    assert found.value["stiffness"] == pytest.approx(rig.stiffness, rel=0.1)
+    search.loaded = lambda *_: []
+    search.known.clear()
+    assert search.unseen(alone, GLIMPSED * demanded(bench))[1].cost > found.cost + 10.0
+
+
+def test_slow_motion_takes_a_second_inertia_for_the_first():
+    """A stiff second link, simulated without smoothing, moves as one link of both inertias would."""
+    _, rig, _, truth = hidden("flexible_link", "chirp", 4, 3.0, J2=0.5, k2=4e6, c2=30.0)
+    factor = FlexibleLink(J2=0.5, k2=4e6, c2=30.0).loading(rig.inertia)
+    assert factor == pytest.approx(1.0 + 0.5 / rig.inertia)
+    lighter = dataclasses.replace(rig, stiffness=rig.stiffness / factor, damping=rig.damping / factor)
+    alone = simulated(lighter, "chirp", 4, 3.0)
+    assert np.std(alone["z"] - truth["z"]) < 0.01 * np.std(truth["z"])
+    assert np.std(simulated(rig, "chirp", 4, 3.0)["z"] - truth["z"]) > 0.05 * np.std(truth["z"])
 
 
 @pytest.mark.slow

@@ -9,11 +9,11 @@ import numpy as np
 
 from ..fitting.search import silent
 from ..mechanics import AbstractEffect
-from ..parameters import free_specs
+from ..parameters import free_specs, values, with_values
 from .candidates import Candidate, reshaped
-from .evidence import demanded, explained
+from .evidence import demanded, explained, measures_only
 from .memories import Member, families, members, without
-from .tried import WHOLE, Tried
+from .tried import LOOSER, WHOLE, Tried
 from .tuning import Rival, apart, level, stronger, told
 from .under_noise import as_if_right, blurred, own_rest, promises
 from .workbench import Trial, Workbench, adequate, strengths
@@ -84,8 +84,31 @@ class Unseen(Tried):
                     # One long trajectory has many minima; a law that is there comes at once to one that is worth going on from.
                     if 2.0 * (trial.cost - fitted.cost) > KEPT * fall:
                         found.append((name, self._keep(self.retied(fitted))))
+            if any(name == told for told, _ in found) and (loaded := self.loaded(trial, name)):
+                strong = min(loaded, key=lambda t: t.cost)
+                if all(strong.cost < fitted.cost - LOOSER for told, fitted in found if told == name):
+                    found.append((name, self._keep(self.retied(strong))))
         best = min(found, key=lambda one: one[1].criterion, default=None)
         return None if best is None or self.imitated(trial, best[1]) else best
+
+    def loaded(self, trial: Trial, name: str) -> list[Trial]:
+        """Models with a law that loads the link, begun as strong as its guesses, with all torques as strong as that asks for.
+
+        A second inertia goes along with the link where that moves slowly, and is taken for a joint that is less stiff, by a
+        quarter for a heavy one: what little it does at first says nothing of that, and no small step leads there.
+        """
+        begun: list[Trial] = []
+        weighed = self.bench.windows.by_force  # where the force is known, so is all that it moves
+        for guess in [] if weighed else self.bench.laws[name].guesses(trial.system, self.bench.quick.motion):
+            factor = guess.loading(float(trial.system.inertia))
+            if factor == 1.0:
+                continue
+            present, effects = values(trial.system), self.bench.effects(trial)
+            joint = with_values(trial.system, {n: factor * present[n] for n in ("stiffness", "damping") if n in present})
+            others = {n: e if measures_only(self.bench.laws[n]) else e.scaled(factor) for n, e in effects.items()}
+            self.progress(f"trying a strong {name}", 0.66)
+            begun.append(self.bench.fit({**others, name: guess}, trial, joint=joint, tied=True, followed=True))
+        return begun
 
     def by_noise(self, current: Trial, member: Member, rivals: list[Rival]) -> bool:
         """Whether a law seems to bring as much beside a tied trial where that is right, in any of some draws of the noise.

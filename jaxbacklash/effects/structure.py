@@ -46,6 +46,9 @@ class FlexibleLink(AbstractEffect):
         # A smaller inertia that swings at the same frequency, as well damped.
         return FlexibleLink(factor * self.J2, factor * self.k2, factor * self.c2)
 
+    def loading(self, inertia: float) -> float:
+        return 1.0 + float(self.J2) / inertia
+
     def torque(self, now: Instant) -> Scalar:
         y2, dy2 = now.state
         return self.k2 * (y2 - now.y) + self.c2 * (dy2 - now.dy)
