@@ -48,10 +48,23 @@ def test_a_search_goes_on_from_what_keeps_a_part_of_its_promise(monkeypatch, sha
     search, gone_on = Unseen(Bench(Model(link, cost=1000.0 - 0.5 * share * fall))), []
     monkeypatch.setattr(search, "imitated", lambda before, after: False)
     monkeypatch.setattr(search, "retied", lambda trial: gone_on.append(trial) or Model(link, cost=800.0))
+    monkeypatch.setattr(search, "loaded", lambda trial, name: [])
     found = search.unseen(alone, 10.0)
     assert (found is not None) == bool(gone_on) == goes_on
     assert found is None or found[1].cost == 800.0
     assert ((link, True) in search.known) == goes_on  # what a first fit has missed is no fit of this law
+
+
+@pytest.mark.parametrize(("strong", "kept"), [((900.0, 700.0), 700.0), ((900.0,), 800.0), ((799.5,), 800.0), ((), 800.0)])
+def test_a_strong_law_is_kept_where_it_does_better_than_what_small_steps_lead_to(monkeypatch, strong, kept):
+    alone, link, gone_on = Model(frozenset(), cost=1000.0), frozenset({"flexible_link"}), []
+    monkeypatch.setattr(module, "promises", lambda bench, trial, law, least: [(100.0, law())])
+    search = Unseen(Bench(Model(link, cost=800.0)))
+    monkeypatch.setattr(search, "imitated", lambda before, after: False)
+    monkeypatch.setattr(search, "retied", lambda trial: gone_on.append(trial.cost) or trial)
+    monkeypatch.setattr(search, "loaded", lambda trial, name: [Model(link, cost=cost) for cost in strong])
+    assert search.unseen(alone, 10.0)[1].cost == kept
+    assert gone_on == [800.0, 700.0][: 1 if kept == 800.0 else 2]
 
 
 @pytest.mark.parametrize("least", [0.0, 500.0])
