@@ -68,9 +68,8 @@ class Foresight:
         get(problem, first_guess(problem), Levenberg())
 
     def catalogue(self) -> None:
-        """The catalogue's program, which every search needs after that of the joint alone."""
-        name = next(iter(self.bench.static))
-        problem, _ = self.bench.problem({}, self.bench.base, extra=[f"{name}.{n}" for n in strengths(self.bench.static[name]())])
+        """The catalogue's program, with which every search begins."""
+        problem, _ = self.bench.problem({}, self.bench.base)
         ready(problem, first_guess(problem), Levenberg())
 
     def friction(self) -> tuple[str | None, float]:

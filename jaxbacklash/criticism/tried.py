@@ -172,14 +172,22 @@ class Tried:
         Windows that come from a model without that friction may stick where the link would rest, and hold the parameters back.
         """
         for _ in range(ROUNDS):
-            if trial.tied or explained(trial) or not self.dry(trial) or self.bench.grips(trial.names):
+            if trial.tied or explained(trial) or not self.may_stick(trial):
                 break
-            self.progress(f"beginning again: {', '.join(sorted(trial.names))}", 0.45)
-            again = self.bench.fit(self.bench.effects(trial), joint=trial.system, patience=WHOLE)
+            again = self.begun_again(trial)
             if not again.misfit < CLEARLY * trial.misfit:
                 break
             trial = self._keep(again)
         return trial
+
+    def begun_again(self, trial: Trial) -> Trial:
+        """The same model from its own parameters and the data, not from where any windows are."""
+        self.progress(f"beginning again: {', '.join(sorted(trial.names))}", 0.45)
+        return self.bench.fit(self.bench.effects(trial), joint=trial.system, tied=trial.tied, patience=WHOLE)
+
+    def may_stick(self, trial: Trial) -> bool:
+        """Whether a search may stick at corners of dry friction; one of a link that is held to the ground goes another way."""
+        return self.dry(trial) and not self.bench.grips(trial.names)
 
     def unstuck(self, before: Trial, tried: dict[str, Trial]) -> dict[str, Trial]:
         """The same candidates, the best of those with dry friction that help `renewed`."""
@@ -241,11 +249,8 @@ class Tried:
 
         It began with the windows of a model without one of its effects: where friction holds there, it may still hold.
         """
-        if not self.dry(tied) or self.bench.grips(tied.names):
-            return tied
-        for _ in range(ROUNDS):
-            self.progress(f"beginning again: {', '.join(sorted(tied.names))}", 0.5)
-            again = self.bench.fit(self.bench.effects(tied), joint=tied.system, tied=True, patience=WHOLE)
+        for _ in range(ROUNDS if self.may_stick(tied) else 0):
+            again = self.begun_again(tied)
             if not tied.cost - again.cost > LOOSER:
                 break
             tied = again
@@ -253,7 +258,7 @@ class Tried:
 
     def softly(self, tied: Trial) -> Trial:
         """A tied model with dry friction fitted by way of friction without corners, if that is better."""
-        if not self.dry(tied) or self.bench.grips(tied.names):
+        if not self.may_stick(tied):
             return tied
         self.progress(f"softening dry friction: {', '.join(sorted(tied.names))}", 0.5)
         for way in (0, 1, 0, 1):

@@ -73,9 +73,10 @@ class Unseen(Tried):
             if not law.states or law.family or name in trial.names:
                 continue
             self.progress(f"looking for {name} under the noise", 0.65)
-            own = len(free_specs(law())) * math.log(self.bench.record.samples)
-            worth = max(least, HALF * (demanded(self.bench) + own))
+            parameters = len(free_specs(law())) * math.log(self.bench.record.samples)
+            worth = max(least, HALF * (demanded(self.bench) + parameters))
             telling = promises(self.bench, trial, law, worth)
+            own: list[Trial] = []
             # Its frequency is a guess, and what is fitted from one need not be the best there is.
             for fall, effect in telling[:LIKELY]:
                 if fall > max(worth, HALF * telling[0][0]):
@@ -83,11 +84,11 @@ class Unseen(Tried):
                     fitted = self.bench.fit(effects, trial, tied=True, followed=True, patience=WHOLE)
                     # One long trajectory has many minima; a law that is there comes at once to one that is worth going on from.
                     if 2.0 * (trial.cost - fitted.cost) > KEPT * fall:
-                        found.append((name, self._keep(self.retied(fitted))))
-            if any(name == told for told, _ in found) and (loaded := self.loaded(trial, name)):
-                strong = min(loaded, key=lambda t: t.cost)
-                if all(strong.cost < fitted.cost - LOOSER for told, fitted in found if told == name):
-                    found.append((name, self._keep(self.retied(strong))))
+                        own.append(self._keep(self.retied(fitted)))
+            strong = min(self.loaded(trial, name) if own else (), key=lambda t: t.cost, default=None)
+            if strong is not None and strong.cost < min(t.cost for t in own) - LOOSER:
+                own.append(self._keep(self.retied(strong)))
+            found += [(name, one) for one in own]
         best = min(found, key=lambda one: one[1].criterion, default=None)
         return None if best is None or self.imitated(trial, best[1]) else best
 

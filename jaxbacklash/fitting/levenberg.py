@@ -58,7 +58,7 @@ def fetch(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int = MO
 
 
 def _takes_long(problem: Problem, *rest: Any) -> bool:
-    """Whether a search may take many steps: that of the joint alone takes few, and all else waits for its program."""
+    """Whether a search may take many steps: that of a joint and nothing else, as `fit` makes it, takes few."""
     return bool(problem.system.effects)
 
 
