@@ -209,11 +209,10 @@ class Search(Unseen):
         """Another path, where a near relative of a law with internal states explains with less beside it, or more."""
         final = steps[-1].trial
         name = next((n for n in sorted(final.names) if self.bench.laws[n].states and self.bench.laws[n].family), None)
-        if name is None or (explained(final) and len(final.names) == 1):
+        if name is None:
             return steps
         best = final
-        family = families(self.bench)[self.bench.laws[name].family or ""]
-        for member in members(self.bench, final, family):
+        for member in self.kindred(final, name):
             self.progress(f"trying {member.name} in place of {name}", 0.7)
             settled, _ = self.prune(self.settle(self.placed(final, member, tied=final.tied, patience=WHOLE)))
             ahead = best.criterion - settled.criterion

@@ -9,7 +9,7 @@ no new compilation.
 from __future__ import annotations
 
 import copy
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import Any
 
@@ -28,6 +28,9 @@ from .workbench import Trial, Workbench
 
 SHARE = 0.001
 """Part of a guessed law's torque that is applied, and twice as much: too little to bend the trajectory."""
+PARTS = (0.3, 0.03, 0.003)
+"""The same of what tells two near relatives apart, which may be so little that a smaller part is lost in rounding: the first
+whose answer is a parabola counts."""
 FURTHER, BENT = 4.0, 0.25
 """A third such part, at which the answer is foretold, and how far off it may be."""
 LOST = 1e3
@@ -49,43 +52,81 @@ def promises(
     fit from
     """
     guesses = law.guesses(trial.system, bench.quick.motion)
-    problem, unknowns = as_it_ended(bench, trial)
-    applied = np.asarray(bench.windows.force)
-    edges = panel_edges(bench)
-
-    def answer(torque: np.ndarray) -> tuple[float, Prediction]:
-        return answered(eqx.tree_at(lambda p: p.windows.force, problem, applied + torque), unknowns)
-
-    still, predicted = answer(np.zeros(()))
-    own = model_record(bench, predicted)
-    along = motion(own)
-    tones = {omega: shape for omega in ringing(bench.record, own) if (shape := law.ringing(trial.system, omega)) is not None}
+    sounding = Sounding(bench, trial)
+    tones = {w: shape for w in ringing(bench.record, sounding.own) if (shape := law.ringing(trial.system, w)) is not None}
     # As many at a time as there are guesses: for so many a program is at hand.
     groups = [[*tones.values(), *guesses][: len(guesses)], guesses] if tones else [guesses]
-    torques = [own_torques(group, trial.system, along) for group in groups]
+    torques = [own_torques(group, trial.system, sounding.along) for group in groups]
     # What a law is of a size, and its torque of size 1.
     heard: list[Callable[[float], Any]] = [partial(law.ringing, trial.system, omega) for omega in tones]
     tried = [*zip(heard, torques[0]), *zip((guess.scaled for guess in guesses), torques[-1])]
     found: list[tuple[float, AbstractEffect]] = []
     for of_size, torque in tried:
-        torque = np.interp(edges, along.t, torque)
-        once = answer(SHARE * torque)[0] - still
-        if problem.system.slides and not once < LOST * still:
-            return []  # dry friction does not let the trajectory follow, whatever the torque
-        if not once < 0.0:
-            continue  # less than half of that share is best, if any
-        twice = answer(2.0 * SHARE * torque)[0] - still
-        slope, curvature = parabola(once, twice, SHARE)
-        if not (np.isfinite(curvature) and curvature > 0.0 and slope < 0.0):
-            continue
-        fall = slope**2 / curvature
-        if not least <= fall < 2.0 * still:
-            continue
-        # Where the answer is no parabola, noise is too small for a trajectory to bend so little: it promises nothing.
-        further = slope * FURTHER * SHARE + 0.5 * curvature * (FURTHER * SHARE) ** 2
-        if abs(answer(FURTHER * SHARE * torque)[0] - still - further) < BENT * abs(further):
-            found.append((fall, of_size(float(np.clip(-slope / curvature, WEAKEST, STRONGEST)))))
+        fall, size = sounding.fall(torque, SHARE, least)
+        if sounding.lost:
+            return []
+        if fall > 0.0:
+            found.append((fall, of_size(float(np.clip(size, WEAKEST, STRONGEST)))))
     return sorted(found, key=lambda promise: -promise[0])
+
+
+def changes(
+    bench: Workbench, trial: Trial, name: str, others: Sequence[str], least: float
+) -> list[tuple[str, float, AbstractEffect]]:
+    """What ``others``, near relatives of a tied trial's law with a memory, promise in its place: of each, by name, the shape that
+    promises most, and how much as `promises` tells it, if that is more than ``least``.
+
+    Applied is the difference of their torques along the model's own motion, which is all that tells them apart.
+    """
+    present = trial.system.effects[name]
+    sounding = Sounding(bench, trial)
+    own = own_torques([present], trial.system, sounding.along)[0]
+    found: list[tuple[str, float, AbstractEffect]] = []
+    for other in others:
+        shapes = bench.laws[other].in_place_of(present, sounding.along)
+        if not shapes:
+            continue  # a user's law that does not say how
+        torques = own_torques(shapes, trial.system, sounding.along)
+        falls = [next((f for p in PARTS if (f := sounding.fall(torque - own, p, 0.0)[0]) > 0.0), 0.0) for torque in torques]
+        if max(falls) > least:
+            found.append((other, max(falls), shapes[int(np.argmax(falls))]))
+    return found
+
+
+class Sounding:
+    """A tied trial's trajectory, and how its misfit answers to a little torque on the link."""
+
+    def __init__(self, bench: Workbench, trial: Trial) -> None:
+        self.problem, self.unknowns = as_it_ended(bench, trial)
+        self.applied, self.edges = np.asarray(bench.windows.force), panel_edges(bench)
+        self.still, predicted = answered(self.problem, self.unknowns)
+        self.own = model_record(bench, predicted)
+        self.along = motion(self.own)
+        self.lost = False  # dry friction does not let the trajectory follow, whatever the torque
+
+    def fall(self, torque: np.ndarray, share: float, least: float) -> tuple[float, float]:
+        """Fall of the sum of squares that a torque (N,) along the trajectory promises at its best size, in units of the noise,
+        and that size, as foretold from ``share`` of it; nothing where that is below ``least`` or no parabola."""
+        nothing = (0.0, 0.0)
+        torque = np.interp(self.edges, self.along.t, torque)
+        once = self._answer(share * torque)
+        self.lost = bool(self.problem.system.slides) and not once < LOST * self.still
+        if self.lost or not once < 0.0:
+            return nothing  # less than half of that share is best, if any
+        slope, curvature = parabola(once, self._answer(2.0 * share * torque), share)
+        if not (np.isfinite(curvature) and curvature > 0.0 and slope < 0.0):
+            return nothing
+        fall = slope**2 / curvature
+        if not least <= fall < 2.0 * self.still:
+            return nothing
+        # Where the answer is no parabola, noise is too small for a trajectory to bend so little: it promises nothing.
+        further = slope * FURTHER * share + 0.5 * curvature * (FURTHER * share) ** 2
+        straight = abs(self._answer(FURTHER * share * torque) - further) < BENT * abs(further)
+        return (fall, -slope / curvature) if straight else nothing
+
+    def _answer(self, torque: np.ndarray) -> float:
+        problem = eqx.tree_at(lambda p: p.windows.force, self.problem, self.applied + torque)
+        return answered(problem, self.unknowns)[0] - self.still
 
 
 def panel_edges(bench: Workbench) -> np.ndarray:

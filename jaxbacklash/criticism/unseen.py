@@ -14,8 +14,8 @@ from .candidates import Candidate, reshaped
 from .evidence import demanded, explained, measures_only
 from .memories import Member, families, members, without
 from .tried import LOOSER, WHOLE, Tried
-from .tuning import Rival, apart, level, stronger, told
-from .under_noise import as_if_right, blurred, own_rest, promises
+from .tuning import Rival, Tuned, apart, level, stronger, told
+from .under_noise import as_if_right, blurred, changes, own_rest, promises
 from .workbench import Trial, Workbench, adequate, strengths
 
 TRIED = 4
@@ -61,6 +61,23 @@ class Unseen(Tried):
             if quiet:
                 self.seen(first)
             found[first.name] = self.placed(current, first, tied=current.tied)
+        return found
+
+    def kindred(self, trial: Trial, name: str) -> list[Member]:
+        """Near relatives of a model's law with a memory that may do better in its place.
+
+        The quick look is asked where there is more than that law to the model, or something missing still. Noise makes it
+        blind to how a knee is rounded long before one trajectory is.
+        """
+        family = families(self.bench)[self.bench.laws[name].family or ""]
+        found = [] if explained(trial) and len(trial.names) == 1 else members(self.bench, trial, family)
+        if not trial.tied or not adequate(trial) or self.bench.outright or self.bench.quick.blind:
+            return found
+        self.progress(f"looking for kin of {name} under the noise", 0.65)
+        others = [n for n in family if n not in (name, *(m.name for m in found))]
+        beside, _, _ = without(self.bench, trial, name)
+        for other, fall, law in changes(self.bench, trial, name, others, demanded(self.bench)):
+            found.append(Member(other, beside, Tuned(law, trial.system, np.zeros(0), len(free_specs(law))), fall, name))
         return found
 
     def unseen(self, trial: Trial, least: float) -> tuple[str, Trial] | None:
