@@ -74,3 +74,20 @@ def test_who_is_asked_for_the_kin_of_a_law(monkeypatch, misfit, beside, tied, qu
     kin = [m.name for m in Unseen(bench).kindred(trial, "dahl")]
     assert ("look" in asked, "trajectory" in asked) == (by_look, by_trajectory)
     assert sorted(kin) == ["bouc_wen", "lugre"] if by_trajectory else kin == ["lugre"] * by_look
+
+
+def test_a_relative_that_does_as_well_is_named_beside_the_one_kept():
+    bench = SimpleNamespace(laws={"dahl": Dahl, "lugre": Lugre, "bouc_wen": BoucWen})
+    search = Unseen(bench)
+
+    def model(criterion, *names, misfit=0.99, tied=True):
+        trial = SimpleNamespace(names=frozenset(names), criterion=criterion, misfit=misfit, tied=tied)
+        search.known[trial.names, tied] = trial
+        return trial
+
+    final = model(100.0, "dahl", "gravity")
+    as_good = model(100.0 - 0.9 * demanded(bench), "bouc_wen", "gravity")
+    model(100.0 + 1.1 * demanded(bench), "lugre", "gravity")
+    model(100.0, "lugre")
+    assert search.kin_as_good(final) == {("bouc_wen", "gravity"): as_good}
+    assert search.kin_as_good(SimpleNamespace(**{**vars(final), "tied": False})) == {}

@@ -84,6 +84,7 @@ class Search(Unseen):
                 steps = self.forward(steps[-1].trial, steps, LITTLE)
         steps = by_free_windows(self, self.with_static(steps), MUCH)
         steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(self.with_yielding(self.with_unseen(steps))))))
+        self.level |= self.kin_as_good(steps[-1].trial)
         return steps
 
     def trim(self, steps: list[Step]) -> list[Step]:

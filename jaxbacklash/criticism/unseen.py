@@ -80,6 +80,18 @@ class Unseen(Tried):
             found.append(Member(other, beside, Tuned(law, trial.system, np.zeros(0), len(free_specs(law))), fall, name))
         return found
 
+    def kin_as_good(self, final: Trial) -> dict[tuple[str, ...], Trial]:
+        """Models fitted on the way that do as well as the last one with a near relative of its law with a memory."""
+        found: dict[tuple[str, ...], Trial] = {}
+        for family in families(self.bench).values():
+            for name in final.names.intersection(family):
+                models = [final.names - {name} | {other} for other in family if other != name]
+                for trial in (self.known.get((names, True)) for names in models):
+                    close = trial is not None and abs(trial.criterion - final.criterion) < demanded(self.bench)
+                    if trial is not None and close and final.tied and adequate(trial):
+                        found[tuple(sorted(trial.names))] = trial
+        return found
+
     def unseen(self, trial: Trial, least: float) -> tuple[str, Trial] | None:
         """The best model with a law with internal states, by name, beside one fitted trajectory, if the law promises to take
         ``least`` off the sum of squares."""
