@@ -76,7 +76,8 @@ def test_who_is_asked_for_the_kin_of_a_law(monkeypatch, misfit, beside, tied, qu
     assert sorted(kin) == ["bouc_wen", "lugre"] if by_trajectory else kin == ["lugre"] * by_look
 
 
-def test_a_relative_that_does_as_well_is_named_beside_the_one_kept():
+@pytest.mark.parametrize("ahead", [-0.9, 0.9, 5.0])
+def test_a_relative_that_does_as_well_is_named_beside_the_one_kept(ahead):
     bench = SimpleNamespace(laws={"dahl": Dahl, "lugre": Lugre, "bouc_wen": BoucWen})
     search = Unseen(bench)
 
@@ -86,7 +87,7 @@ def test_a_relative_that_does_as_well_is_named_beside_the_one_kept():
         return trial
 
     final = model(100.0, "dahl", "gravity")
-    as_good = model(100.0 - 0.9 * demanded(bench), "bouc_wen", "gravity")
+    as_good = model(100.0 - ahead * demanded(bench), "bouc_wen", "gravity")
     model(100.0 + 1.1 * demanded(bench), "lugre", "gravity")
     model(100.0, "lugre")
     assert search.kin_as_good(final) == {("bouc_wen", "gravity"): as_good}

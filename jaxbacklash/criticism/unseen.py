@@ -82,15 +82,12 @@ class Unseen(Tried):
 
     def kin_as_good(self, final: Trial) -> dict[tuple[str, ...], Trial]:
         """Models fitted on the way that do as well as the last one with a near relative of its law with a memory."""
-        found: dict[tuple[str, ...], Trial] = {}
-        for family in families(self.bench).values():
-            for name in final.names.intersection(family):
-                models = [final.names - {name} | {other} for other in family if other != name]
-                for trial in (self.known.get((names, True)) for names in models):
-                    close = trial is not None and abs(trial.criterion - final.criterion) < demanded(self.bench)
-                    if trial is not None and close and final.tied and adequate(trial):
-                        found[tuple(sorted(trial.names))] = trial
-        return found
+        if not final.tied:
+            return {}
+        kin = [final.names - {n} | {o} for f in families(self.bench).values() for n in final.names.intersection(f) for o in f]
+        tried = [self.known[names, True] for names in kin if names != final.names and (names, True) in self.known]
+        good = [t for t in tried if adequate(t) and t.criterion - final.criterion < demanded(self.bench)]
+        return {tuple(sorted(t.names)): t for t in good}
 
     def unseen(self, trial: Trial, least: float) -> tuple[str, Trial] | None:
         """The best model with a law with internal states, by name, beside one fitted trajectory, if the law promises to take
