@@ -82,22 +82,6 @@ def test_a_strength_at_the_end_of_its_range_explains_nothing():
         assert ("end of its range" in said.text) == limit
 
 
-@pytest.mark.parametrize("misfit", [1.01, 3.0])
-def test_windows_explained_apart_are_joined_by_what_lets_one_trajectory_follow(monkeypatch, misfit):
-    """The addition brings nothing on free windows; it is kept where with it, and only with it, they are one trajectory."""
-    apart = Model(frozenset({"link"}), cost=100.0, tied=False)
-    both = Model(frozenset({"link", "cubic"}), cost=99.0, tied=False)
-    joined = replace(both, tied=True, misfit=misfit)
-    fit = SimpleNamespace(effects=lambda trial: {}, fit=lambda *_, **__: joined)
-    search = Search(SimpleNamespace(laws={}, **vars(fit)))
-    search.known[both.names, False] = both
-    monkeypatch.setattr(search, "prune", lambda trial, spare=None: (trial, ()))
-    monkeypatch.setattr(search, "forward", lambda start, steps, least: steps)
-    steps = search.one_piece([Step(apart, "link", (), (), {"drift": -9.0, "cubic": -0.3})])
-    assert [s.added for s in steps] == (["link", "cubic"] if misfit < 1.03 else ["link"])
-    assert steps[-1].trial.tied == (misfit < 1.03)
-
-
 @pytest.mark.parametrize(("reached", "cost", "kept"), [(1.0, 60.0, "static"), (1.0, 99.0, "lugre"), (1.03, 60.0, "lugre")])
 def test_a_law_that_no_trajectory_follows_gives_way_to_several_without_states(monkeypatch, reached, cost, kept):
     """The first of those brings less than the law with internal states; only where its path ends better is that taken."""

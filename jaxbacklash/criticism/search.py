@@ -26,12 +26,13 @@ from .evidence import (
     significance,
     worth,
 )
+from .joining import one_piece
 from .loose import by_free_windows
 from .memories import Member, families, may_replace, members
 from .steps import Step, leading
 from .tried import LOOSER, WHOLE, follows
 from .under_noise import delayed
-from .unseen import GLIMPSED, LIKELY, MOST_EFFECTS, TRIED, Unseen
+from .unseen import GLIMPSED, MOST_EFFECTS, TRIED, Unseen
 from .workbench import Trial, Workbench, adequate
 from .yielding import yielding
 
@@ -83,7 +84,8 @@ class Search(Unseen):
             if not explained(steps[-1].trial):
                 steps = self.forward(steps[-1].trial, steps, LITTLE)
         steps = by_free_windows(self, self.with_static(steps), MUCH)
-        steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(self.with_yielding(self.with_unseen(steps))))))
+        steps = one_piece(self, self.with_yielding(self.with_unseen(steps)), MUCH)
+        steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(steps))))
         self.level |= self.kin_as_good(steps[-1].trial)
         return steps
 
@@ -128,7 +130,8 @@ class Search(Unseen):
             added = next((n for n in settled.names if self.bench.laws[n].states), None)
             if added is None:
                 continue
-            path = self.one_piece(self.forward(settled, [replace(steps[0], trial=base), Step(settled, added, dropped, ())], MUCH))
+            begun = [replace(steps[0], trial=base), Step(settled, added, dropped, ())]
+            path = one_piece(self, self.forward(settled, begun, MUCH), MUCH)
             if path[-1].trial.tied and (not final.tied or path[-1].trial.criterion < final.criterion - demanded(self.bench)):
                 return path
         return steps
@@ -155,25 +158,6 @@ class Search(Unseen):
         other = path[-1].trial
         ahead = other.tied and explained(other) and gain(final, other) > demanded(self.bench)
         return path if ahead else steps
-
-    def one_piece(self, steps: list[Step]) -> list[Step]:
-        """The path with the addition that makes one trajectory of windows that a law with internal states explains only apart.
-
-        It has a start to choose in every free window, and takes up there what another law would bring.
-        """
-        last = steps[-1].trial
-        if last.tied or not explained(last) or len(last.names) >= MOST_EFFECTS:
-            return steps
-        for name in sorted(steps[-1].evidence, key=steps[-1].evidence.__getitem__, reverse=True)[:LIKELY]:
-            free = self.known.get((last.names | {name}, False))
-            if free is None or (free.names, True) in self.known:
-                continue
-            self.progress(f"joining {', '.join(sorted(free.names))}", 0.6)
-            tied = self._keep(self.bench.fit(self.bench.effects(free), free, tied=True, patience=WHOLE))
-            if explained(tied):
-                settled, dropped = self.prune(tied, spare=name)
-                return self.forward(settled, [*steps, Step(settled, name, dropped, ())], MUCH)
-        return steps
 
     def with_unseen(self, steps: list[Step]) -> list[Step]:
         """The path with a law with internal states that the noise hides, where the trajectory of the last model asks for one.
@@ -338,6 +322,8 @@ class Search(Unseen):
             # Two of a family may each look better from the other, one with free windows and one without: none is kept twice.
             kept = {s.trial.names for s in steps}
             tried = self.finished(current, {n: t for n, t in tried.items() if t.names not in kept})
+            if not self.helps(current, tried):
+                tried = self.as_promised(current, ranking, tried)
             evidence = {n: worth(self.bench, current, t, n) for n, t in tried.items()}
             refits = {n: (current.misfit, t.misfit) for n, t in tried.items()}
             steps[-1] = replace(steps[-1], ranking=ranking, evidence=evidence, refits=refits)

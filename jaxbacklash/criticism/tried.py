@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from ..fitting.search import silent
 from ..mechanics import AbstractEffect
@@ -21,6 +21,8 @@ SLIGHT, BARELY = 0.03, 1e-4
 little beside one trajectory, which so much does not bend."""
 ROUGH = 1.0
 """How much of half the sum of squares may be left to gain by a model that can hardly be chosen."""
+BROUGHT = 0.5
+"""Share of what a candidate promised that it brings at least where its search has arrived."""
 LOOSER = 1.0
 """A fit that comes out so much lower when it is given its turn again had stuck."""
 ROUNDS, CLEARLY = 8, 0.97
@@ -194,6 +196,19 @@ class Tried:
         rubbing = [n for n, t in tried.items() if self.dry(t) and gain(before, t) > demanded(self.bench)]
         best = min(rubbing, key=lambda n: tried[n].criterion, default=None)
         return tried if best is None else {**tried, best: self.renewed(tried[best])}
+
+    def as_promised(self, before: Trial, ranking: Sequence[Candidate], tried: dict[str, Trial]) -> dict[str, Trial]:
+        """The same candidates; of those with dry friction that promised enough, and brought not half of it beside one trajectory,
+        the likeliest `shaken`: its search has stuck at corners on the way."""
+
+        def short(candidate: Candidate) -> bool:
+            after = tried.get(candidate.name)
+            stuck = after is not None and after.tied and self.may_stick(after)
+            fell = 2.0 * (before.cost - after.cost) if after is not None else 0.0
+            return stuck and fell < BROUGHT * candidate.gain and self.promised(before, candidate) > 1.0
+
+        first = next((c.name for c in ranking if short(c)), None) if before.tied else None
+        return tried if first is None else {**tried, first: self.shaken(tried[first])}
 
     def loosened(self, trial: Trial) -> Trial:
         """The same model with its windows free."""
