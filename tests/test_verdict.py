@@ -50,21 +50,25 @@ def test_a_long_record_tells_a_little_more_than_noise_from_noise(freedom, comple
         (17.0, 34.0, 20.0, None),
         (1.0, 34.0, 1.02, None),
         (1.0, 34.0, 3.0, "still missed, by 3 times"),
-        (1.0, 1.5, 3.0, "rises from 1.5 to 3 times the noise: there it does not hold"),
+        (1.0, 1.5, 3.0, "rises from 1.5 to 3 times the noise: what was added stands in for something else"),
         (1.0, None, None, None),
     ],
 )
 def test_what_a_held_out_record_says_against_a_model_is_told(misfit, before, after, said):
     fits = [fit(33.0, 33.0, before), fit(misfit, misfit, after)]
     verdict = judge_rest(model("gravity", misfit=misfit, freedom=20_000), fits)
-    assert verdict.complete == (misfit < 1.1)  # it is the record's own rest that tells
+    assert verdict.here == (misfit < 1.1)
+    assert verdict.complete == (verdict.here and said is None)
     assert ("held-out" in verdict.text) == (said is not None)
     assert said is None or said in verdict.text
+    assert verdict.text.startswith("Incomplete: ") != verdict.complete
+    assert "  " not in verdict.text
 
 
 def test_a_joint_that_explains_one_record_alone_says_that_the_other_is_missed():
-    alone = fit(1.0, 1.0, 4.0)
-    assert "The held-out record is still missed, by 4 times" in judge_rest(model(misfit=1.0, freedom=20_000), [alone]).text
+    verdict = judge_rest(model(misfit=1.0, freedom=20_000), [fit(1.0, 1.0, 4.0)])
+    assert "The held-out record is still missed, by 4 times" in verdict.text
+    assert verdict.word == "incomplete"
 
 
 def test_a_short_record_leaves_a_clear_rest_later_than_a_long_one():

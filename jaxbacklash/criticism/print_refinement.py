@@ -71,7 +71,7 @@ def alternatives_sentence(refinement: Refinement) -> str:
     """Which other explanations the record cannot rule out."""
     if not refinement.effects:
         return "No effect was added."
-    if not refinement.verdict.complete:
+    if not refinement.verdict.here:
         return "Alternatives were not looked for, since something is missing still."
     if not refinement.alternatives:
         return "No other set of effects as small explains the record as well."

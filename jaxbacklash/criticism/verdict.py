@@ -17,10 +17,12 @@ WORSE = 1.1
 
 @dataclass(frozen=True)
 class Verdict:
-    """``complete`` when what is left is noise; ``text`` says so, and what a held-out record says against it."""
+    """``complete`` when what is left is noise, on a held-out record too where there is one; ``text`` says so, and what speaks
+    against it; ``here`` whether it is noise on the record itself."""
 
     complete: bool
     text: str
+    here: bool
 
     @property
     def word(self) -> str:
@@ -32,47 +34,51 @@ def judge_rest(final: Trial, fits: list[Fit], beyond: Unnamed | None = None) -> 
     first, last = fits[0], fits[-1]
     most = most_of_noise(final)
     strained = [name for name in sorted(final.names) if at_a_limit(final, name)]
-    complete = final.misfit < most and last.score.median < 1.1 and not strained and beyond is None
-    named = ", ".join(sorted(final.names))
-    left = "what is left is noise"
-    if last.score.rms > 1.1:
-        left += f" but in a few windows (the median window is off by {last.score.median:.2f} times the noise)"
-    if complete and not final.names:
+    here = final.misfit < most and last.score.median < 1.1 and not strained and beyond is None
+    against = _elsewhere(first, last, here)
+    if here:
+        return Verdict(not against, _what_explains(final, first, last, against), here)
+    added = f" with {', '.join(sorted(final.names))} added" if final.names else ""
+    if beyond is not None and final.misfit < most:
         text = (
-            f"The joint's play, stiffness and damping explain the record: the prediction error is {last.score.rms:.3g} times the "
-            f"noise, and {left}."
-        )
-    elif complete:
-        text = (
-            f"Missing in the base model: {named}. With it the prediction error falls from {first.score.rms:.3g} to "
-            f"{last.score.rms:.3g} times the noise, and {left}."
-        )
-    elif beyond is not None and final.misfit < most:
-        text = f"Incomplete: the prediction error is {last.score.rms:.3g} times the noise"
-        text += f" with {named} added" if named else ""
-        text += (
-            f", but what is left is not noise alone: a torque that goes with {beyond.words} would clearly lower it (evidence "
-            f"{beyond.fall:.0f}), and no effect in the catalogue exerts that."
+            f"Incomplete: the prediction error is {last.score.rms:.3g} times the noise{added}, but what is left is not noise "
+            f"alone: a torque that goes with {beyond.words} would clearly lower it (evidence {beyond.fall:.0f}), and no effect "
+            "in the catalogue exerts that."
         )
     else:
-        text = f"Incomplete: the misfit is still {last.score.rms:.3g} times the noise"
-        text += f" with {named} added" if named else ""
+        text = f"Incomplete: the misfit is still {last.score.rms:.3g} times the noise{added}"
         if most < final.misfit < LITTLE_MORE:
             text += f" ({final.misfit:.3f} over the whole record, of which noise explains {most:.3f} at most)"
         text += ", and no effect in the catalogue explains the rest."
         if strained:
             text += f" {' and '.join(strained)} at the end of its range: more likely it stands in for something else."
-    return Verdict(bool(complete), text + _elsewhere(first, last, complete))
+    return Verdict(False, f"{text} {against}".rstrip(), here)
 
 
-def _elsewhere(first: Fit, last: Fit, complete: bool) -> str:
+def _what_explains(final: Trial, first: Fit, last: Fit, against: str) -> str:
+    """What is said of a model that leaves but noise on the record, and what a held-out one has ``against`` it."""
+    left = "what is left is noise"
+    if last.score.rms > LITTLE_MORE:
+        left += f" but in a few windows (the median window is off by {last.score.median:.2f} times the noise)"
+    named, error = ", ".join(sorted(final.names)), f"{last.score.rms:.3g} times the noise"
+    if against:
+        have = f"{named} added" if named else "play, stiffness and damping alone"
+        return f"Incomplete: with {have} the prediction error is {error} on this record, but not on the held-out one. {against}"
+    if not named:
+        have = "The joint's play, stiffness and damping explain the record"
+        return f"{have}: the prediction error is {error}, and {left}."
+    fell = f"the prediction error falls from {first.score.rms:.3g} to {error}"
+    return f"Missing in the base model: {named}. With it {fell}, and {left}."
+
+
+def _elsewhere(first: Fit, last: Fit, here: bool) -> str:
     """What a held-out record says against a model, nothing where it says nothing against it."""
     before, after = first.heldout, last.heldout
     if before is None or after is None:
         return ""
     if last is not first and after.rms > WORSE * before.rms:
-        rises = f" On the held-out record the error rises from {before.rms:.3g} to {after.rms:.3g} times the noise: "
-        return rises + ("there it does not hold." if complete else "what was added stands in for something else.")
-    if complete and after.median > LITTLE_MORE:
-        return f" The held-out record is still missed, by {after.rms:.3g} times the noise: something else is at work there."
+        rises = f"On the held-out record the error rises from {before.rms:.3g} to {after.rms:.3g} times the noise: "
+        return rises + "what was added stands in for something else."
+    if here and after.median > LITTLE_MORE:
+        return f"The held-out record is still missed, by {after.rms:.3g} times the noise: something else is at work there."
     return ""
