@@ -123,7 +123,8 @@ def take_over(work: Path, files: list[Path], duration: float) -> None:
                 kept |= {
                     "joint": row.get("joint", dict.fromkeys(JOINT)),
                     "truth": truth,
-                    "complete": row["verdict"] == "complete",
+                    # What a held-out record says against a model no peer was told.
+                    "complete": row.get("here", row["verdict"] == "complete"),
                 }
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(json.dumps(kept, indent=1), encoding="utf-8")
