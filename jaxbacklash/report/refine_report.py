@@ -75,7 +75,7 @@ def _rankings(stages: list[dict[str, Any]], complete: bool) -> list[Panel]:
         else:
             why = "no evidence is strong enough to add any"
             if max(c["evidence"] or 0.0 for c in stage["candidates"]) > STRONG:
-                why = "none takes away enough of so large a misfit to explain it"
+                why = "none takes away enough of what is left to explain it"
             sentence = f"What one more effect would bring to {have}: {why}."
         drawn = candidate_ranking(stage["candidates"], current=stage["rms_over_noise"])
         panels.append(ranking_panel(f"What is missing in {have}?", sentence, drawn, number))
