@@ -77,7 +77,7 @@ def result(path="bench/arm.csv"):
         "stages": stages(),
         "effects": ["gravity"],
         "alternatives": [["preload", "asymmetric_gap"]],
-        "alternatives_text": "This record cannot tell gravity from: preload + asymmetric_gap. Another excitation may.",
+        "alternatives_text": "This record cannot tell gravity from: preload + asymmetric_gap; the intervals allow for either.",
         "verdict": "complete",
         "verdict_text": "Gravity was missing; with it, noise alone is left.",
         "cross_check": {

@@ -76,8 +76,8 @@ def alternatives_sentence(refinement: Refinement) -> str:
     if not refinement.alternatives:
         return "No other set of effects as small explains the record as well."
     other = "; or ".join(" + ".join(names) for names in refinement.alternatives)
-    said = [f"This record cannot tell {' + '.join(refinement.effects)} from: {other}.", *map(str, refinement.experiments)]
-    return " ".join(said if refinement.experiments else [*said, "Another excitation may."])
+    said = f"This record cannot tell {' + '.join(refinement.effects)} from: {other}; the intervals allow for either."
+    return " ".join([said, *(map(str, refinement.experiments) if refinement.experiments else ["Another excitation may."])])
 
 
 def _stages(stages: tuple[Stage, ...]) -> list[str]:

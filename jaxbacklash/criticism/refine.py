@@ -24,6 +24,7 @@ from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..system import System
 from .candidates import Candidate
+from .either import either
 from .experiment import Experiment, separate
 from .foresight import Foresight
 from .search import Search
@@ -106,7 +107,7 @@ def refine(
     seed : seed of everything random
     progress : told the stage in words and the share of the work done
     settled : told a model that leaves but noise as soon as it is scored, while the search still looks for more, and at last the
-        model kept, unless that was the last it was told
+        model kept, unless that was the last it was told; that once more, if others do as well, with intervals that allow for them
 
     Raises
     ------
@@ -139,6 +140,9 @@ def refine(
 
     progress("scoring predictions", 0.85)
     last = judged.tell(steps[-1].trial)
+    told, last = last, either(last, steps[-1].trial, tuple(search.level.values()))
+    if last is not told:
+        settled(last)
     fits = [*(judged(s.trial) for s in steps[:-1]), last]
     stages = tuple(Stage(s.added, s.dropped, fit, s.ranking, s.evidence, s.refits) for s, fit in zip(steps, fits))
     clock["score"] = time.perf_counter()
