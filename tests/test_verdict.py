@@ -18,8 +18,8 @@ def model(*names, misfit, freedom):
     return SimpleNamespace(names=frozenset(names), free=(), system=system, misfit=misfit, cost=0.5 * freedom * misfit**2)
 
 
-def fit(rms, median, held=None):
-    heldout = None if held is None else SimpleNamespace(rms=held, median=held)
+def fit(rms, median, held=None, held_median=None):
+    heldout = None if held is None else SimpleNamespace(rms=held, median=held_median or held)
     return SimpleNamespace(score=SimpleNamespace(rms=rms, median=median), heldout=heldout)
 
 
@@ -63,6 +63,16 @@ def test_what_a_held_out_record_says_against_a_model_is_told(misfit, before, aft
     assert said is None or said in verdict.text
     assert verdict.text.startswith("Incomplete: ") != verdict.complete
     assert "  " not in verdict.text
+
+
+@pytest.mark.parametrize(("median", "complete"), [(0.99, True), (1.07, False)])
+def test_a_few_windows_of_a_held_out_record_do_not_outweigh_all_others(median, complete):
+    fits = [fit(5.0, 4.0, 1.6, 1.4), fit(1.0, 1.0, 5.6, median)]
+    verdict = judge_rest(model("dahl", misfit=1.0, freedom=20_000), fits)
+    assert verdict.complete == complete
+    few = "a few windows are missed (its error is 5.6 times the noise, in the median window 0.99)"
+    assert (few in verdict.text) == complete
+    assert ("stands in" in verdict.text) != complete
 
 
 def test_a_joint_that_explains_one_record_alone_says_that_the_other_is_missed():
