@@ -136,7 +136,7 @@ class _Program:
 
     def __init__(self, call: Compiled, frame: Any, name: str):
         self.call, self.frame, self.name = call, frame, name
-        self.plain = devices_of(call) > 1 or jax.default_backend() == "cpu"
+        self.plain = len(devices_of(call)) > 1 or jax.default_backend() == "cpu"
 
     def __call__(self, arrays: list[Any]) -> Any:
         in_main = threading.current_thread() is threading.main_thread()

@@ -79,7 +79,9 @@ def start(*, cache: bool = True, devices: int | None = None, brief: bool = False
     # Where in the source every operation came from is a sixteenth of a program, and takes as long to read.
     jax.config.update("jax_traceback_in_locations_limit", 0)
     with contextlib.suppress(RuntimeError):  # the program has computed already: it goes on with what it has
-        jax.config.update("jax_num_cpu_devices", devices or min(cores(), MOST_CORES))
+        shared = devices or min(cores(), MOST_CORES)
+        # One more, on which all else is computed: see `jaxbacklash.sharing`.
+        jax.config.update("jax_num_cpu_devices", shared + 1 if shared > 1 else 1)
     if not cache:
         return
     folder = cache_folder()

@@ -26,7 +26,8 @@ def read(path: Path) -> Compiled:
     text, devices, ins, outs = pickle.loads(zlib.decompress(kept))
     if b"lapack_" in text:
         _find_lapack()
-    return serialize_executable.deserialize_and_load(text, ins, outs, execution_devices=jax.devices()[:devices])
+    known = {device.id: device for device in jax.devices()}
+    return serialize_executable.deserialize_and_load(text, ins, outs, execution_devices=[known[d] for d in devices])
 
 
 def read_frame(path: Path) -> Any:
@@ -58,10 +59,11 @@ def write(path: Path, call: Compiled, frame: Any) -> None:
         return
 
 
-def devices_of(call: Compiled) -> int:
-    """How many devices a program was made for."""
+def devices_of(call: Compiled) -> list[int]:
+    """The devices that a program was made for, by number."""
     shardings = jax.tree.leaves((call.input_shardings, call.output_shardings))
-    return max((len(sharding.device_set) for sharding in shardings), default=1)
+    most = max((sharding.device_set for sharding in shardings), key=len, default=set(jax.devices()[:1]))
+    return sorted(device.id for device in most)
 
 
 @functools.cache

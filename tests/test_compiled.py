@@ -19,6 +19,7 @@ from jaxbacklash.compiled import kept_jit
 from jaxbacklash.effects import Gravity
 from jaxbacklash.mechanics import AbstractEffect
 from jaxbacklash.read_ahead import reading_ahead
+from jaxbacklash.sharing import sharing
 
 
 def process(traced: list[str]):
@@ -217,7 +218,7 @@ def test_without_a_cache_and_within_a_trace_it_is_a_jit(cache):
 
 def test_linear_algebra_and_several_devices_come_back(cache):
     def solve(matrix, right):
-        cores = jax.sharding.Mesh(np.asarray(jax.devices()), ("cores",))
+        cores = jax.sharding.Mesh(np.asarray(sharing()), ("cores",))
         share = jax.sharding.PartitionSpec()
         spread = jax.shard_map(lambda a: a + jax.lax.axis_index("cores") * 0.0, mesh=cores, in_specs=share, out_specs=share,
                                check_vma=False)  # fmt: skip

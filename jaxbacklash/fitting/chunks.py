@@ -17,6 +17,8 @@ import numpy as np
 from jax.flatten_util import ravel_pytree
 from jax.sharding import Mesh, PartitionSpec
 
+from ..sharing import sharing
+
 Array = Any
 CHUNK = 32
 """Windows that are worked on side by side."""
@@ -35,7 +37,7 @@ def by_chunks(work: Callable[[Any, Any], Any], shared: Any, lead: Any, used: Arr
     count = jax.tree.leaves(lead)[0].shape[0]
     if count % CHUNK:
         return work(shared, lead)
-    cores = jax.device_count()
+    cores = len(sharing())
     if count % (CHUNK * cores):
         cores = 1
     arrays, rest = eqx.partition(shared, eqx.is_array)
@@ -70,7 +72,7 @@ def by_chunks(work: Callable[[Any, Any], Any], shared: Any, lead: Any, used: Arr
         return jax.lax.all_gather(jax.vmap(lambda f: ravel_pytree(f)[0])(found), "cores", axis=1)
 
     everywhere, split = PartitionSpec(), PartitionSpec("cores")
-    mesh = Mesh(np.asarray(jax.devices()), ("cores",))
+    mesh = Mesh(np.asarray(sharing()), ("cores",))
     spread = jax.shard_map(
         on_core, mesh=mesh, in_specs=(everywhere, split, everywhere), out_specs=everywhere, check_vma=False
     )

@@ -13,12 +13,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import equinox as eqx
-import jax
 import numpy as np
 from scipy.interpolate import BSpline
 
 from ..errors import BadInput
 from ..records import Record
+from ..sharing import sharing
 from ..signals import DEGREE, NEGLIGIBLE, choose_intervals, fit_spline, is_smooth, knots, noise_level, noise_of_differences
 from .chunks import CHUNK
 from .force import force_edges
@@ -100,7 +100,7 @@ def bucket(count: int) -> int:
 
     Chunks that hold no data are skipped, so that room costs little, and a record of another length hardly ever compiles anew.
     """
-    together = CHUNK * jax.device_count()
+    together = CHUNK * len(sharing())
     size = -(-LEAST_ROOM // together) * together
     while size < count:
         size *= 4
