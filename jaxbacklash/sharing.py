@@ -1,8 +1,8 @@
 """Which devices share a computation that is dealt out, and which one is left for all else.
 
-A CPU device runs 32 computations at a time (XLA's own bound). Those that other threads have begun wait for a shared computation
-that was launched before them, and if they take up all that a device may run, its part of that never begins: a deadlock that no
-timeout ends. So what is dealt out keeps off the device on which everything else is computed.
+A CPU device runs so many computations at a time and no more. Those that other threads have begun wait for a shared computation
+that was launched before them, and if they take up all that the device may run, its part of that never begins: a deadlock that
+nothing ends. So what is dealt out keeps off the device on which everything else is computed.
 """
 
 from __future__ import annotations

@@ -59,13 +59,17 @@ def test_windows_explained_apart_are_joined_by_what_lets_one_trajectory_follow(m
     assert APART.names | {"gravity"} not in asked  # it promises nothing
 
 
-def test_what_only_led_to_one_trajectory_does_not_stay(monkeypatch):
-    both = replace(APART, names=APART.names | {"gap_spring"}, cost=99.0)
-    search, _ = searched(monkeypatch, {both.names: replace(both, tied=True)}, frozenset({"gap_spring"}))
-    (step,) = one_piece(search, [Step(APART, "flexible_link", (), (promising("gap_spring", 2.0),))], 0.25)
+@pytest.mark.parametrize("needless", [("gap_spring",), ("gap_spring", "gravity")])
+def test_what_only_led_to_one_trajectory_does_not_stay(monkeypatch, needless):
+    """Nor does what came before and is needless in one trajectory; that it went is told."""
+    last = replace(APART, names=APART.names | {"gravity"})
+    both = replace(last, names=last.names | {"gap_spring"}, cost=99.0)
+    search, _ = searched(monkeypatch, {both.names: replace(both, tied=True)}, frozenset(needless))
+    (step,) = one_piece(search, [Step(last, "flexible_link", ("preload",), (promising("gap_spring", 2.0),))], 0.25)
     assert step.added == "flexible_link"
     assert step.trial.tied
-    assert step.trial.names == APART.names
+    assert step.trial.names == last.names - set(needless)
+    assert step.dropped == ("preload", *needless[1:])
 
 
 @pytest.mark.parametrize("last", [replace(APART, tied=True), replace(APART, misfit=1.5)])

@@ -42,8 +42,12 @@ def one_piece(search: Search, steps: list[Step], least: float) -> list[Step]:
             continue
         settled, dropped = search.prune(tied)
         added = next(iter(sorted(settled.names - last.names)), None)
-        step = Step(settled, added, dropped, ()) if added else replace(steps[-1], trial=settled)
-        path = search.forward(settled, [*steps, step] if added else [*steps[:-1], step], least)
+        if added:
+            path = [*steps, Step(settled, added, dropped, ())]
+        else:
+            gone = sorted(last.names - settled.names)
+            path = [*steps[:-1], replace(steps[-1], trial=settled, dropped=(*steps[-1].dropped, *gone))]
+        path = search.forward(settled, path, least)
         if path[-1].trial.tied and explained(path[-1].trial):
             return path
     return steps

@@ -35,7 +35,7 @@ def judge_rest(final: Trial, fits: list[Fit], beyond: Unnamed | None = None) -> 
     first, last = fits[0], fits[-1]
     most = most_of_noise(final)
     strained = [name for name in sorted(final.names) if at_a_limit(final, name)]
-    here = final.misfit < most and last.score.median < 1.1 and not strained and beyond is None
+    here = final.misfit < most and last.score.median < LITTLE_MORE and not strained and beyond is None
     against = _elsewhere(first, last, here)
     if here:
         return Verdict(not against, _what_explains(final, first, last, against), here)
