@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from types import MappingProxyType
 
 from ..fitting.search import ADEQUATE, silent
 from ..mechanics import AbstractEffect
@@ -15,6 +16,7 @@ from .evidence import (
     SURE,
     acts_anyway,
     at_a_bound,
+    claim,
     demanded,
     excess,
     explained,
@@ -40,6 +42,8 @@ CLOSE, HOPEFUL = 0.9, 0.2
 """Predicted gain, as a share of the best candidate's, that earns a refit: once noise is reached, and before."""
 CLEAR = 8.0
 """An effect that stands so many standard errors from zero need not be left out to see that it is missed."""
+AHEAD = 2.0
+"""A fall of the criterion by so much tells two models that are as complex, or what a search found before from what it has now."""
 LITTLE, MUCH, MOST = 0.1, 0.25, 0.5
 """Share of the excess that an addition must take away where a rest stays unexplained: at least; as long as laws with
 internal states have not been tried; and if it is an effect of the measuring chain."""
@@ -210,17 +214,21 @@ class Search(Unseen):
         return self.forward(best, [*leading(steps, best), Step(best, added, (), ())], MUCH)
 
     def swap(
-        self, steps: list[Step], seen: frozenset[frozenset[str]] = frozenset()
+        self, steps: list[Step], seen: Mapping[frozenset[str], float] = MappingProxyType({})
     ) -> tuple[list[Step], dict[tuple[str, ...], Trial]]:
         """One effect of the last model after the other replaced by what else would do: the better path, and what does as well.
 
-        ``seen`` are the models that were kept on the way, to none of which it goes back.
+        ``seen`` are the criteria of the models that were kept on the way, to none of which it goes back as it was.
         """
         level: dict[tuple[str, ...], Trial] = {}
         final = steps[-1].trial
         if not final.names or not final.tied or not adequate(final):
             return steps, level
-        seen |= {final.names}
+        seen = {**seen, final.names: final.criterion}
+
+        def new(trial: Trial) -> bool:
+            return trial.criterion < seen.get(trial.names, math.inf) - AHEAD
+
         for name in sorted(final.names):
             for other in self.instead(steps, name):
                 needless: tuple[str, ...] = ()
@@ -228,7 +236,7 @@ class Search(Unseen):
                     # What does as well may do so without what took the place: where it led, the rest was stuck before.
                     other, needless = self.prune(other)
                 lead = final.criterion - other.criterion
-                if other.names not in seen and lead > self.lead(other, final, name) and adequate(other):
+                if new(other) and lead > self.lead(other, final, name) and adequate(other):
                     relieved = self.shaken(final)
                     if final.cost - relieved.cost > LOOSER:
                         return self.swap([*steps[:-1], self.freed(steps[-1], relieved)], seen)
@@ -240,7 +248,7 @@ class Search(Unseen):
                         lost = sorted(final.names - other.names)
                         step = replace(steps[-1], trial=other, dropped=(*steps[-1].dropped, *lost))
                     path = self.reduced([*steps[:-1], step])
-                    if path[-1].trial.names not in seen:
+                    if new(path[-1].trial):
                         return self.swap(path, seen)
                 if -lead < demanded(self.bench):
                     level[tuple(sorted(other.names))] = other
@@ -248,11 +256,14 @@ class Search(Unseen):
 
     def lead(self, other: Trial, final: Trial, name: str) -> float:
         """By how much another model must be better to replace the last one: clearly, where what is new in it is of the measuring
-        chain alone or contains the law whose place it takes. What is contained in it need only be no worse."""
+        chain alone or contains the law whose place it takes. What is contained in it need only be no worse, and what acts no
+        worse than what only measures."""
         if other.names < final.names:
             return -demanded(self.bench)
         new = [self.bench.laws[n] for n in other.names - final.names]
-        return demanded(self.bench) if all(measures_only(law) or name in law.absorbs for law in new) else 2.0
+        if measures_only(self.bench.laws[name]) and not any(measures_only(law) for law in new):
+            return -AHEAD
+        return demanded(self.bench) if all(measures_only(law) or name in law.absorbs for law in new) else AHEAD
 
     def reduced(self, steps: list[Step]) -> list[Step]:
         """The path with laws of its last model reduced to simpler ones that they contain, where those do as well."""
@@ -277,10 +288,9 @@ class Search(Unseen):
         """
         final = steps[-1].trial
         kept = {n: e for n, e in self.bench.effects(final).items() if n != name}
-        ranking = next((s.ranking for s in steps if s.trial.names == frozenset(kept) and s.ranking), None)
-        if ranking is None:
-            left = self.bench.fit(kept, final, patience=10)
-            ranking = tuple(rank(self.bench, left, may_join(self.bench, left)))
+        known = next((s for s in steps if s.trial.names == frozenset(kept) and s.ranking), None)
+        left = known.trial if known else self.bench.fit(kept, final, patience=10)
+        ranking = known.ranking if known else tuple(rank(self.bench, left, may_join(self.bench, left)))
         own = next((c for c in ranking if c.name == name), None)
         near = [c for c in ranking if c.name not in final.names and c.gain > CLOSE * (own.gain if own else 0.0)][:2]
         if own and not self.bench.laws[name].states and at_a_bound(final, name):
@@ -288,7 +298,8 @@ class Search(Unseen):
             near += [c for c in ranking if c.name not in final.names and c not in near and c.parameters < own.parameters]
         near = [c for c in near if c.name not in self.bench.laws[name].absorbs]
         near = [c for c in near if kept.keys().isdisjoint(self.bench.laws[c.name].absorbs)]
-        if name in [n for names in families(self.bench).values() for n in names]:
+        # The quick look sees no more than free windows do: where those leave but noise without the law, it is not asked.
+        if name in [n for names in families(self.bench).values() for n in names] and not explained(left):
             near = [c for c, may in zip(near, may_replace(self.bench, final, name, [c.effect for c in near])) if may]
         near = [c for c in near if not self.ruled_out(final, frozenset(kept) | {c.name})]
         for c in near:
@@ -450,8 +461,9 @@ class Search(Unseen):
             # Far from zero needs no trial; what is near is left out and fitted again.
             doubtful = [n for n in trial.names if n != spare and significance(trial, n) < CLEAR]
             simpler = {n: self.without(trial, n) for n in doubtful}
-            # A model with as many parameters is another one, not a simpler one.
-            losses = {n: gain(t, trial) for n, t in simpler.items() if len(t.free) < len(trial.free)}
+            # A model with as many parameters is another one, not a simpler one, unless what gives way adds nothing to the one.
+            idle = [n for n in doubtful if claim(trial, n) < demanded(self.bench)]
+            losses = {n: gain(t, trial) for n, t in simpler.items() if len(t.free) < len(trial.free) or n in idle}
             losses |= {n: min(loss, 0.0) for n, loss in losses.items() if led_on(self.bench, simpler[n], trial, n)}
             needless = [n for n, loss in losses.items() if loss < demanded(self.bench)]
             if not needless:
