@@ -78,7 +78,7 @@ def test_it_is_tried_beside_the_quick_looks_where_that_cannot_tell(monkeypatch, 
     bench.fit = lambda effects, *_, **__: fitted.append(effects) or Model(names, cost=second)
     search = Unseen(bench)
     coulomb, found = Model(frozenset({"coulomb_joint"}), cost=1000.0), Model(names, cost=990.0)
-    monkeypatch.setattr(search, "add", lambda before, candidate: search._keep(found))
+    monkeypatch.setattr(search, "add", lambda before, candidate: search.keep(found))
     monkeypatch.setattr(search, "untold", lambda trial, dry, name: [jb.CoulombJoint()] if untold else [])
     shaped = Candidate("stribeck", jb.effects.Stribeck(-1.0, 4.0, 0.2), gain, 1.0, {})
     monkeypatch.setattr(module, "reshaped", lambda *of: shaped)

@@ -6,7 +6,7 @@ import pytest
 
 from jaxbacklash.criticism import yielding as module
 from jaxbacklash.criticism.tried import Tried
-from jaxbacklash.criticism.yielding import yielding
+from jaxbacklash.criticism.yielding import sharp_as_well, yielding
 from jaxbacklash.effects import CoulombJoint, Dahl
 
 from .number_models import Model
@@ -22,6 +22,7 @@ class Bench:
     def __init__(self, **answers):
         self.answers, self.begun = answers, []
         self.laws = {"coulomb_joint": CoulombJoint, "dahl": Dahl}
+        self.static = {"coulomb_joint": CoulombJoint}
         self.outright, self.slowest, self.is_cut, self.quick = (), 0.0, False, SimpleNamespace(motion=None, blind=False)
 
     def effects(self, trial):
@@ -84,3 +85,24 @@ def test_dry_friction_that_follows_from_there_is_kept_unless_it_leaves_clearly_m
 def test_a_law_whose_shape_the_record_does_not_tell_is_no_answer(monkeypatch):
     loose, soft, stuck = models(1e5, misfit=9.0)
     assert found(loose, monkeypatch=monkeypatch, shapeless=True, dahl=[soft], coulomb_joint=[stuck])[0] is None
+
+
+@pytest.mark.parametrize(
+    ("apart", "cost", "misfit", "as_well"),
+    [(1.0, 100.3, 1.0, True), (1.0, 110.0, 1.0, False), (1.0, 99.0, 1.2, False), (1.4, 101.0, 1.0, False)],
+    ids=["does as well", "is behind", "leaves a rest", "is ruled out by free windows"],
+)
+def test_dry_friction_takes_the_place_of_what_gives_where_it_does_as_well(monkeypatch, apart, cost, misfit, as_well):
+    """Its kin may have led there: what gives was then never held against dry friction itself."""
+    _, soft, sharp = models(cost, misfit=misfit)
+    bench = Bench(coulomb_joint=[sharp])
+    search = Tried(bench)
+    search.known[frozenset({"coulomb_joint"}), False] = model(90.0, tied=False, misfit=apart, coulomb_joint=CoulombJoint(3.0))
+    assert sharp_as_well(search, soft) == (("coulomb_joint", sharp) if as_well else None)
+    assert [float(law.Tc) for law in bench.begun] == ([] if apart > 1.1 else [pytest.approx(3.5)])
+
+
+def test_dry_friction_and_free_windows_are_left_alone():
+    loose, _, sharp = models(100.0)
+    assert sharp_as_well(Tried(Bench()), sharp) is None
+    assert sharp_as_well(Tried(Bench()), loose) is None

@@ -36,7 +36,7 @@ from .tried import LOOSER, WHOLE, follows
 from .under_noise import delayed
 from .unseen import GLIMPSED, MOST_EFFECTS, TRIED, Unseen
 from .workbench import Trial, Workbench, adequate
-from .yielding import yielding
+from .yielding import sharp_as_well, yielding
 
 CLOSE, HOPEFUL = 0.9, 0.2
 """Predicted gain, as a share of the best candidate's, that earns a refit: once noise is reached, and before."""
@@ -66,10 +66,10 @@ class Search(Unseen):
     def base(self) -> Trial:
         """The joint alone."""
         self.progress("fitting the joint alone", 0.1)
-        found = self.settle(self._keep(self.bench.fit({}, patience=WHOLE)))
+        found = self.settle(self.keep(self.bench.fit({}, patience=WHOLE)))
         if self.bench.outright and not adequate(found):
             # A link that is not seen may be put anew at the start of every window; what it cannot do is jump between them.
-            found = self._keep(self.bench.fit({}, found, through=True))
+            found = self.keep(self.bench.fit({}, found, through=True))
         return found
 
     def run(self) -> list[Step]:
@@ -188,7 +188,7 @@ class Search(Unseen):
         if found is None:
             return steps
         added, trial = found
-        settled, dropped = self.prune(self._keep(trial), spare=added)
+        settled, dropped = self.prune(self.keep(trial), spare=added)
         path = [*leading(steps, settled), Step(settled, added, dropped, ())]
         # Which of a family it is comes first: what the wrong one leaves would ask for effects that are not there.
         kin = self.with_kin(path)
@@ -279,6 +279,11 @@ class Search(Unseen):
                 if gain(simpler, richer) < demanded(self.bench) or (shapeless(final, name, self.bench.slowest) and not acts):
                     settled, dropped = self.prune(self.settle(simpler))
                     return self.reduced([*steps, Step(settled, other, (name, *dropped), ())])
+        if sharp := sharp_as_well(self, final):
+            dry, trial = sharp
+            settled, dropped = self.prune(self.keep(trial))
+            gone = final.names - trial.names
+            return self.reduced([*steps, Step(settled, dry, (*gone, *dropped), ())])
         return steps
 
     def instead(self, steps: list[Step], name: str) -> Iterator[Trial]:
@@ -303,7 +308,7 @@ class Search(Unseen):
             near = [c for c, may in zip(near, may_replace(self.bench, final, name, [c.effect for c in near])) if may]
         near = [c for c in near if not self.ruled_out(final, frozenset(kept) | {c.name})]
         for c in near:
-            yield self._keep(self.joined({**kept, c.name: c.effect}, final))
+            yield self.keep(self.joined({**kept, c.name: c.effect}, final))
 
     def forward(self, start: Trial, steps: list[Step], least: float) -> list[Step]:
         """Add effects one by one, dropping those that become needless, until nothing helps any more.
@@ -462,8 +467,9 @@ class Search(Unseen):
             doubtful = [n for n in trial.names if n != spare and significance(trial, n) < CLEAR]
             simpler = {n: self.without(trial, n) for n in doubtful}
             # A model with as many parameters is another one, not a simpler one, unless what gives way adds nothing to the one.
-            idle = [n for n in doubtful if claim(trial, n) < demanded(self.bench)]
-            losses = {n: gain(t, trial) for n, t in simpler.items() if len(t.free) < len(trial.free) or n in idle}
+            fewer = [n for n, t in simpler.items() if len(t.free) < len(trial.free)]
+            idle = [n for n in doubtful if n not in fewer and claim(trial, n) < demanded(self.bench)]
+            losses = {n: gain(simpler[n], trial) for n in (*fewer, *idle)}
             losses |= {n: min(loss, 0.0) for n, loss in losses.items() if led_on(self.bench, simpler[n], trial, n)}
             needless = [n for n, loss in losses.items() if loss < demanded(self.bench)]
             if not needless:
@@ -488,7 +494,7 @@ class Search(Unseen):
             self.progress(f"trying {name}", 0.6)
             for effect in self.bench.quick.choose(start.system, start.free, guesses, keep=2):
                 effects: dict[str, AbstractEffect] = {**self.bench.effects(start), name: effect}
-                found.append(self._keep(self.bench.fit(effects, start, tied=False)))
+                found.append(self.keep(self.bench.fit(effects, start, tied=False)))
                 if found[-1].misfit < NOISE_FLOOR:
                     break
         return found

@@ -56,14 +56,14 @@ class Tried:
         if not trial.tied and adequate(trial):
             tied = self.bench.fit(self.bench.effects(trial), trial, tied=True, patience=WHOLE)
             if follows(tied, trial):
-                return self._keep(tied)
+                return self.keep(tied)
             if (through := self.let_go(trial)) is not None:
                 return through
             if adequate(tied) and not tied.done and not self.dry(tied):
                 tied = self.finish(tied)
             # A tied search that has stuck at corners tells nothing about the model.
             if adequate(tied) and (tied.done or not self.dry(tied)):
-                return self._keep(tied)
+                return self.keep(tied)
         return trial if trial.done else self.finish(trial)
 
     def let_go(self, free: Trial) -> Trial | None:
@@ -87,10 +87,10 @@ class Tried:
             return None
         whole = self.bench.fit(self.bench.effects(parted), parted, tied=True, patience=WHOLE)
         if follows(whole, free):
-            return self._keep(whole)
+            return self.keep(whole)
         self.bench.cut(ties)
         self.known = {key: trial for key, trial in self.known.items() if not trial.tied}
-        return self._keep(parted)
+        return self.keep(parted)
 
     def add(self, before: Trial, candidate: Candidate, rival: Trial | None = None) -> Trial:
         """The model with one more effect, in place of simpler laws it contains, fitted as the model before was: tied or free.
@@ -107,20 +107,20 @@ class Tried:
                 # What is left to gain is less than half of that lead.
                 behind = start.criterion - rival.criterion > 2.0 * demanded(self.bench) and start.cost < before.cost
                 if (behind and len(start.free) > len(rival.free)) or (not start.done and start.cost < before.cost):
-                    return self._keep(start)  # what has run out of patience has had as much as any other
+                    return self.keep(start)  # what has run out of patience has had as much as any other
             if not before.tied:
-                trial = self._keep(self.bench.fit(effects, start))
+                trial = self.keep(self.bench.fit(effects, start))
             elif names > before.names and self.promised(before, candidate) < 1.0 and not self.bench.is_cut:
                 # One search is enough, from where the model before has arrived: if that has stuck, an addition that does nothing
                 # else may bring it on.
                 barely = {**effects, candidate.name: effects[candidate.name].scaled(BARELY)}
-                return self._keep(self.bench.fit(barely, before, tied=True))
+                return self.keep(self.bench.fit(barely, before, tied=True))
             else:
-                trial = self._keep(self.joined(effects, before))
+                trial = self.keep(self.joined(effects, before))
             if trial.cost > before.cost and names > before.names:
                 # The larger model holds the smaller one: it has stuck on the way from the strength that was predicted.
                 slight = {**effects, candidate.name: effects[candidate.name].scaled(SLIGHT)}
-                self._keep(self.bench.fit(slight, before, tied=before.tied))
+                self.keep(self.bench.fit(slight, before, tied=before.tied))
         return self.known[key]
 
     def with_one_more(self, before: Trial, candidate: Candidate) -> dict[str, AbstractEffect]:
@@ -143,12 +143,12 @@ class Tried:
         better = trial.misfit < (STUCK if trial.done else 1.0) * before.misfit
         if self.bench.is_cut and gain(before, trial) < demanded(self.bench):
             # Where friction held the link, a search from a simpler model's windows ends near that: no gain there says nothing.
-            free = self._keep(self.bench.fit(self.bench.effects(trial), trial, patience=WHOLE))
+            free = self.keep(self.bench.fit(self.bench.effects(trial), trial, patience=WHOLE))
             again = self.bench.fit(self.bench.effects(free), free, tied=True, patience=WHOLE)
             return min(trial, self.softly(again), key=lambda t: t.cost)
         if better and (trial.done or self.dry(trial)):
             return trial
-        free = self._keep(self.bench.fit(effects, before, tied=False))
+        free = self.keep(self.bench.fit(effects, before, tied=False))
         again = self.bench.fit(self.bench.effects(free), free, tied=True, patience=patience)
         best = min(trial, again, key=lambda t: t.cost)
         return best if better or follows(best, free) else self.softly(best)
@@ -156,7 +156,7 @@ class Tried:
     def retied(self, tied: Trial) -> Trial:
         """A tied model or, where that is better, the same by way of free windows: one long trajectory has many minima."""
         for _ in range(ROUNDS):
-            free = self._keep(self.bench.fit(self.bench.effects(tied), tied, patience=WHOLE))
+            free = self.keep(self.bench.fit(self.bench.effects(tied), tied, patience=WHOLE))
             effects = self.bench.effects(free)
             again = self.bench.fit(effects, free, tied=True, patience=WHOLE)
             if not tied.cost - again.cost > LOOSER:
@@ -179,7 +179,7 @@ class Tried:
             again = self.begun_again(trial)
             if not again.misfit < CLEARLY * trial.misfit:
                 break
-            trial = self._keep(again)
+            trial = self.keep(again)
         return trial
 
     def begun_again(self, trial: Trial) -> Trial:
@@ -214,7 +214,7 @@ class Tried:
         """The same model with its windows free."""
         key = (trial.names, False)
         if key not in self.known:
-            self._keep(self.bench.fit(self.bench.effects(trial), trial, tied=False))
+            self.keep(self.bench.fit(self.bench.effects(trial), trial, tied=False))
         return self.known[key]
 
     def without(self, before: Trial, name: str) -> Trial:
@@ -223,7 +223,7 @@ class Tried:
         key = (names, before.tied and self.bench.grips(names) == self.bench.grips(before.names))
         if key not in self.known or self.known[key].cost - before.cost > significance(before, name) ** 2:
             effects = {n: e for n, e in self.bench.effects(before).items() if n != name}
-            self._keep(self.bench.fit(effects, before, tied=key[1]))
+            self.keep(self.bench.fit(effects, before, tied=key[1]))
         return self.known[key]
 
     def relieved(self, before: Trial, after: Trial) -> Trial:
@@ -257,7 +257,7 @@ class Tried:
             return trial
         self.shook.add(trial.names)
         found = self.anew(self.softly(trial))
-        return trial if found is trial else self._keep(found)
+        return trial if found is trial else self.keep(found)
 
     def anew(self, tied: Trial) -> Trial:
         """A tied model with dry friction begun again from its own parameters and the data, as long as that helps.
@@ -291,12 +291,12 @@ class Tried:
         names = frozenset(effects)
         if final.tied and self.ruled_out(final, names) and not explained(self.known[names, False]):
             # It was left behind from elsewhere. If it is from here as well, one trajectory need not be looked for.
-            apart = self._keep(self.bench.fit(effects, self.loosened(final), tied=False, patience=WHOLE))
+            apart = self.keep(self.bench.fit(effects, self.loosened(final), tied=False, patience=WHOLE))
             if self.ruled_out(final, names):
                 return apart
-        trial = self._keep(self.bench.fit(effects, final, tied=final.tied, patience=WHOLE))
+        trial = self.keep(self.bench.fit(effects, final, tied=final.tied, patience=WHOLE))
         if final.tied and not trial.done and trial.misfit > STUCK * final.misfit:
-            return self._keep(self.bench.fit(effects, final, tied=False, patience=WHOLE))
+            return self.keep(self.bench.fit(effects, final, tied=False, patience=WHOLE))
         return trial
 
     def outdone(self, name: str, tried: dict[str, Trial]) -> bool:
@@ -320,7 +320,7 @@ class Tried:
             self.progress(f"trying {member.name}", 0.45)
             # A joint that was fitted without friction's memory is bent by it: the tuned one is nearer.
             joint = trial.system if member.kin else member.tuned.system
-            fitted = self._keep(self.bench.fit(effects, trial, joint=joint, tied=tied, patience=patience, followed=True))
+            fitted = self.keep(self.bench.fit(effects, trial, joint=joint, tied=tied, patience=patience, followed=True))
             arrived = adequate(fitted) and (fitted.done or fitted.cost < trial.cost)
             if tied and not arrived:
                 # Windows that are one trajectory can keep a law from where free ones find it.
@@ -336,12 +336,13 @@ class Tried:
         """The trial fitted to the end, as long as that helps: along a curved valley it is a long way."""
         for _ in range(ROUNDS):
             cost = trial.cost
-            trial = self._keep(self.bench.fit(self.bench.effects(trial), trial, tied=trial.tied, patience=WHOLE))
+            trial = self.keep(self.bench.fit(self.bench.effects(trial), trial, tied=trial.tied, patience=WHOLE))
             if trial.done or not cost - trial.cost > 0.5 * demanded(self.bench):
                 break
         return trial
 
-    def _keep(self, trial: Trial) -> Trial:
+    def keep(self, trial: Trial) -> Trial:
+        """The best fit so far of a model, this one counted."""
         key = (trial.names, trial.tied)
         known = self.known.get(key)
         # Of two that are as good the one that has arrived.

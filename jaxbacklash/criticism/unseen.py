@@ -110,10 +110,10 @@ class Unseen(Tried):
                     fitted = self.bench.fit(effects, trial, tied=True, followed=True, patience=WHOLE)
                     # One long trajectory has many minima; a law that is there comes at once to one that is worth going on from.
                     if 2.0 * (trial.cost - fitted.cost) > KEPT * fall:
-                        own.append(self._keep(self.retied(fitted)))
+                        own.append(self.keep(self.retied(fitted)))
             strong = min(self.loaded(trial, name) if own else (), key=lambda t: t.cost, default=None)
             if strong is not None and strong.cost < min(t.cost for t in own) - LOOSER:
-                own.append(self._keep(self.retied(strong)))
+                own.append(self.keep(self.retied(strong)))
             found += [(name, one) for one in own]
         best = min(found, key=lambda one: one[1].criterion, default=None)
         return None if best is None or self.imitated(trial, best[1]) else best
@@ -162,7 +162,7 @@ class Unseen(Tried):
                 continue
             for law in laws[:LIKELY] if key not in self.known else []:
                 self.progress(f"trying {name} in place of {dry}", 0.45)
-                self._keep(self.bench.fit({**beside, name: law}, trial, tied=True, followed=True, patience=WHOLE))
+                self.keep(self.bench.fit({**beside, name: law}, trial, tied=True, followed=True, patience=WHOLE))
             found[name] = self.known[key]
         return found
 
@@ -183,7 +183,7 @@ class Unseen(Tried):
             # Nor does the quick look then know its shape, and from a wrong one a search may not come back.
             other = reshaped(self.bench, current, c.name) if untold and found[c.name].tied else None
             if other is not None and other.gain > 2.0 * (current.cost - found[c.name].cost):
-                found[c.name] = self._keep(self.bench.fit(self.with_one_more(current, other), current, tied=True))
+                found[c.name] = self.keep(self.bench.fit(self.with_one_more(current, other), current, tied=True))
         return found
 
     def untold(self, trial: Trial, dry: str, name: str) -> list[AbstractEffect]:

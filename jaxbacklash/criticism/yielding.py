@@ -8,11 +8,13 @@ so that its windows stay free and leave noise. The law that gives is then tried 
 from __future__ import annotations
 
 from ..mechanics import AbstractEffect, canonical_name
+from ..parameters import specs, with_values
+from .candidates import rubs
 from .evidence import demanded, explained, gain, shapeless
 from .memories import families
 from .tried import WHOLE, Tried
 from .tuning import level, stronger
-from .workbench import Trial, adequate
+from .workbench import Trial, Workbench, adequate, strengths
 
 
 def yielding(search: Tried, final: Trial) -> tuple[str, Trial] | None:
@@ -36,10 +38,35 @@ def yielding(search: Tried, final: Trial) -> tuple[str, Trial] | None:
     return None
 
 
+def sharp_as_well(search: Tried, final: Trial) -> tuple[str, Trial] | None:
+    """The model with dry friction in the place of a law that gives, by that friction's name, where the record does not tell them
+    apart: it may have come for another of its kin, and dry friction is the limit of all of them.
+
+    Free windows are asked first: what they rule out has no trajectory to be looked for.
+    """
+    bench = search.bench
+    name = next((n for n in sorted(final.names) if bench.laws[n].states and bench.laws[n].family), None)
+    if name is None or not final.tied or not explained(final) or bench.outright:
+        return None
+    dry = min((n for n, law in bench.static.items() if rubs(law)), key=lambda n: len(specs(bench.static[n]())))
+    law = bench.static[dry]()
+    law = with_values(law, {strengths(law)[0]: level(final.system.effects[name])})
+    names = final.names - {name} | {dry}
+    free = search.known.get((names, False)) or search.keep(bench.fit({**_beside(bench, final, name), dry: law}, final))
+    if not explained(free):
+        return None
+    sharp = _sharp(search, final, name, law)
+    return (dry, sharp) if explained(sharp) and gain(sharp, final) < demanded(bench) else None
+
+
+def _beside(bench: Workbench, final: Trial, name: str) -> dict[str, AbstractEffect]:
+    return {n: e for n, e in bench.effects(final).items() if n != name}
+
+
 def _joined(search: Tried, final: Trial, dry: str, name: str) -> Trial | None:
     """One trajectory with the law that gives, from the first of its guesses that leads to one."""
     bench = search.bench
-    beside = {n: e for n, e in bench.effects(final).items() if n != dry}
+    beside = _beside(bench, final, dry)
     size = level(final.system.effects[dry])
     for guess in bench.laws[name].guesses(final.system, bench.quick.motion):
         search.progress(f"trying {name} in place of {dry}", 0.65)
