@@ -1,4 +1,4 @@
-"""What takes the place of what in the last model, on models that are only numbers."""
+"""What takes the place of what in the last model, and what is held against it before, on models that are only numbers."""
 
 from types import SimpleNamespace
 
@@ -85,3 +85,20 @@ def test_what_adds_nothing_goes_though_another_has_its_parameter_then(monkeypatc
     trial, dropped = search.prune(both)
     assert trial is (both if kept else spring)
     assert dropped == (() if kept else ("preload",))
+
+
+@pytest.mark.parametrize(("left", "tried"), [(1.0, ["likely"]), (1.025, ["likely", "right"])])
+def test_what_leaves_more_than_chance_ends_no_comparison(monkeypatch, left, tried):
+    """A wrong law may leave little more than noise: what promised half as much may be the right one."""
+    search = searched(monkeypatch, likely=ACTS, right=ACTS)
+    current = Model(frozenset(), cost=10370.0, misfit=1.06)
+    gains = {"likely": 920.0, "right": 530.0}
+    ranking = tuple(SimpleNamespace(name=n, gain=g, predicted=1.04, parameters=1) for n, g in gains.items())
+    monkeypatch.setattr(search, "may_help", lambda *_: True)
+    monkeypatch.setattr(search, "memories", lambda *_: {})
+    monkeypatch.setattr(search, "given", lambda *_: {})
+    monkeypatch.setattr(search, "richer", lambda *_: {})
+    monkeypatch.setattr(search, "rubs", lambda trial: False)
+    models = {"likely": Model(frozenset({"likely"}), cost=9600.0, misfit=left), "right": Model(frozenset({"right"}), cost=9200.0)}
+    monkeypatch.setattr(search, "add", lambda before, candidate, rival=None: models[candidate.name])
+    assert list(search.attempts(current, ranking)) == tried

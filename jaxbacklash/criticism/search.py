@@ -280,10 +280,8 @@ class Search(Unseen):
                     settled, dropped = self.prune(self.settle(simpler))
                     return self.reduced([*steps, Step(settled, other, (name, *dropped), ())])
         if sharp := sharp_as_well(self, final):
-            dry, trial = sharp
-            settled, dropped = self.prune(self.keep(trial))
-            gone = final.names - trial.names
-            return self.reduced([*steps, Step(settled, dry, (*gone, *dropped), ())])
+            settled, dropped = self.prune(self.keep(sharp[1]))
+            return self.reduced([*steps, Step(settled, sharp[0], (*(final.names - sharp[1].names), *dropped), ())])
         return steps
 
     def instead(self, steps: list[Step], name: str) -> Iterator[Trial]:
@@ -407,7 +405,9 @@ class Search(Unseen):
             enough = any(t.misfit < NOISE_FLOOR for t in alike.values())
             if enough and any(self.bench.laws[n].states and gain(current, t) > demanded(self.bench) for n, t in alike.items()):
                 break  # it was ahead of every static one before it was fitted
-            if c.gain < (CLOSE if enough else HOPEFUL) * telling[0].gain:
+            # What leaves more than noise by chance may be the wrong one, however little that is.
+            clean = enough and any(not leaves_a_rest(t) for t in alike.values())
+            if c.gain < (CLOSE if clean else HOPEFUL) * telling[0].gain:
                 continue
             self.progress(f"trying {c.name}", 0.4)
             rival = min(alike.values(), key=lambda t: t.criterion) if enough else None
