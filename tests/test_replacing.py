@@ -66,7 +66,6 @@ def test_the_quick_look_has_no_say_where_free_windows_leave_noise_without_a_law(
     final = Model(frozenset({"gives"}), cost=100.0)
     spring = SimpleNamespace(name="spring", gain=80.0, parameters=2, effect="spring")
     first = Step(Model(frozenset(), cost=200.0, misfit=left), None, (), (spring,))
-    monkeypatch.setattr("jaxbacklash.criticism.search.families", lambda bench: {"friction": ["gives"]})
     monkeypatch.setattr("jaxbacklash.criticism.search.may_replace", lambda bench, trial, name, others: [False] * len(others))
     monkeypatch.setattr(search, "joined", lambda effects, before: Model(frozenset(effects), cost=90.0))
     found = list(search.instead([first, Step(final, "gives", (), ())], "gives"))

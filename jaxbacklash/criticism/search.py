@@ -197,7 +197,7 @@ class Search(Unseen):
     def with_kin(self, steps: list[Step]) -> list[Step]:
         """Another path, where a near relative of a law with internal states explains with less beside it, or more."""
         final = steps[-1].trial
-        name = next((n for n in sorted(final.names) if self.bench.laws[n].states and self.bench.laws[n].family), None)
+        name = self.gives(final)
         if name is None:
             return steps
         best = final
@@ -302,7 +302,7 @@ class Search(Unseen):
         near = [c for c in near if c.name not in self.bench.laws[name].absorbs]
         near = [c for c in near if kept.keys().isdisjoint(self.bench.laws[c.name].absorbs)]
         # The quick look sees no more than free windows do: where those leave but noise without the law, it is not asked.
-        if name in [n for names in families(self.bench).values() for n in names] and not explained(left):
+        if name == self.gives(final) and not explained(left):
             near = [c for c, may in zip(near, may_replace(self.bench, final, name, [c.effect for c in near])) if may]
         near = [c for c in near if not self.ruled_out(final, frozenset(kept) | {c.name})]
         for c in near:

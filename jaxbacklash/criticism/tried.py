@@ -247,6 +247,10 @@ class Tried:
         """Name of a model's dry friction in the joint, None without."""
         return next((n for n in sorted(trial.names) if self.bench.laws[n].slides and self.bench.laws[n].port == "joint"), None)
 
+    def gives(self, trial: Trial) -> str | None:
+        """Name of a model's friction that gives before it slips, None without."""
+        return next((n for n in sorted(trial.names) if self.bench.laws[n].states and self.bench.laws[n].family), None)
+
     def rubs(self, trial: Trial) -> bool:
         """Whether a model has friction in the joint: what a record asks for beside it may be that friction's memory."""
         return any(rubs(self.bench.laws[name]) for name in trial.names)

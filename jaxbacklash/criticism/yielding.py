@@ -8,7 +8,7 @@ so that its windows stay free and leave noise. The law that gives is then tried 
 from __future__ import annotations
 
 from ..mechanics import AbstractEffect, canonical_name
-from ..parameters import specs, with_values
+from ..parameters import free_specs, with_values
 from .candidates import rubs
 from .evidence import demanded, explained, gain, shapeless
 from .memories import families
@@ -45,10 +45,13 @@ def sharp_as_well(search: Tried, final: Trial) -> tuple[str, Trial] | None:
     Free windows are asked first: what they rule out has no trajectory to be looked for.
     """
     bench = search.bench
-    name = next((n for n in sorted(final.names) if bench.laws[n].states and bench.laws[n].family), None)
+    name = search.gives(final)
     if name is None or not final.tied or not explained(final) or bench.outright:
         return None
-    dry = min((n for n, law in bench.static.items() if rubs(law)), key=lambda n: len(specs(bench.static[n]())))
+    counts = {n: len(free_specs(law())) for n, law in bench.static.items() if rubs(law)}
+    dry = min(counts, key=counts.__getitem__, default=None)
+    if dry is None or counts[dry] >= len(free_specs(bench.laws[name]())):
+        return None
     law = bench.static[dry]()
     law = with_values(law, {strengths(law)[0]: level(final.system.effects[name])})
     names = final.names - {name} | {dry}
