@@ -44,6 +44,7 @@ class Bench:
 
 @pytest.fixture(autouse=True)
 def presliding(monkeypatch):
+    monkeypatch.setattr(module, "may_replace", lambda bench, trial, name, others, sure: [True] * len(others))
     monkeypatch.setattr(Dahl, "guesses", classmethod(lambda cls, system, motion=None: [cls(1.0, 1e3), cls(1.0, 1e4)]))
 
 
@@ -100,6 +101,14 @@ def test_dry_friction_takes_the_place_of_what_gives_where_it_does_as_well(monkey
     search.known[frozenset({"coulomb_joint"}), False] = model(90.0, tied=False, misfit=apart, coulomb_joint=CoulombJoint(3.0))
     assert sharp_as_well(search, soft) == (("coulomb_joint", sharp) if as_well else None)
     assert [float(law.Tc) for law in bench.begun] == ([] if apart > 1.1 else [pytest.approx(3.5)])
+
+
+def test_what_the_quick_look_puts_far_behind_is_not_fitted(monkeypatch):
+    monkeypatch.setattr(module, "may_replace", lambda bench, trial, name, others, sure: [False] * len(others))
+    _, soft, sharp = models(100.0)
+    bench = Bench(coulomb_joint=[sharp])
+    assert sharp_as_well(Tried(bench), soft) is None
+    assert not bench.begun
 
 
 def test_dry_friction_and_free_windows_are_left_alone():

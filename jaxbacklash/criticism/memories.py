@@ -79,13 +79,19 @@ def members(
     return sorted(found, key=lambda m: (most - m.lead, 0) if most - m.lead > demanded(bench) else (0.0, m.tuned.count))
 
 
-def may_replace(bench: Workbench, trial: Trial, name: str, others: Sequence[AbstractEffect]) -> list[bool]:
-    """Whether the quick look leaves open that each of some static laws would do in the place of a fitted one of a family."""
+def may_replace(
+    bench: Workbench, trial: Trial, name: str, others: Sequence[AbstractEffect], sure: float = 1.0
+) -> list[bool]:
+    """Whether the quick look leaves open that each of some static laws would do in the place of a fitted one of a family.
+
+    It does unless it puts them behind that one by ``sure`` times the evidence demanded.
+    """
     if bench.quick.blind:
         return [True] * len(others)
     _, system, free = without(bench, trial, name)
     tuned = tune(bench.quick, system, free, [trial.system.effects[name]])
-    return [lead(bench.quick, free, tuned, system, [apart(e, strengths(e))]) < demanded(bench) for e in others]
+    least = sure * demanded(bench)
+    return [lead(bench.quick, free, tuned, system, [apart(e, strengths(e))]) < least for e in others]
 
 
 def without(bench: Workbench, trial: Trial, kin: str | None) -> tuple[dict[str, AbstractEffect], System, tuple[str, ...]]:
