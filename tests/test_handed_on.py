@@ -1,4 +1,4 @@
-"""Windows that stuck begin again where the window before has ended."""
+"""Windows that stuck begin again where the window before has ended, the first of a record where its samples lead."""
 
 from types import SimpleNamespace
 
@@ -6,10 +6,14 @@ import numpy as np
 import pytest
 
 import jaxbacklash as jb
+from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting import handed_on as module
 from jaxbacklash.fitting.handed_on import handed_on, stuck_windows
 from jaxbacklash.fitting.levenberg import Levenberg, Minimum
+from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.fitting.shooting import Prediction, Unknowns
+from jaxbacklash.mechanics import catalogue
+from jaxbacklash.parameters import values as values_of
 
 WINDOWS, SAMPLES = 40, 10
 
@@ -27,7 +31,8 @@ def problem():
     tie = np.ones(WINDOWS)
     tie[20] = 0.0  # another record begins with window 21
     zero = np.zeros((WINDOWS, SAMPLES))
-    return SimpleNamespace(windows=SimpleNamespace(measured=zero, weight=zero + 1.0, tie=tie))
+    windows = SimpleNamespace(measured=zero, weight=zero + 1.0, tie=tie, panel=0.01, every=1)
+    return SimpleNamespace(windows=windows, system=SimpleNamespace(observed="y"))
 
 
 def missing(*far):
@@ -38,8 +43,8 @@ def missing(*far):
 
 @pytest.mark.parametrize(
     ("far", "stuck"),
-    [((), []), ((5,), [5]), ((5, 6), [5]), ((0,), []), ((21,), []), ((5, 10, 15), [])],
-    ids=["none", "one", "two in a row", "the first", "the first of a record", "too many to be exceptions"],
+    [((), []), ((5,), [5]), ((5, 6), [5]), ((0,), [0]), ((21,), [21]), ((20, 21), [20, 21]), ((5, 10, 15), [])],
+    ids=["none", "one", "two in a row", "the first", "the first of a record", "two in two records", "too many to be exceptions"],
 )
 def test_which_windows_have_stuck(problem, far, stuck):
     assert stuck_windows(problem, ended(missing(*far), 1.0)).tolist() == stuck
@@ -67,6 +72,59 @@ def test_they_go_on_from_the_window_before_as_long_as_that_helps(problem, monkey
     left.append(ended(missing(5), 101.0))
     first = ended(missing(5), 100.0)
     assert handed_on(problem, first, Levenberg()) == (first, 7)
+
+
+def test_the_start_of_a_link_that_is_not_seen_is_not_read_off_its_samples(problem):
+    problem.system.observed = "T"
+    assert not stuck_windows(problem, ended(missing(21), 1.0)).size
+
+
+def test_the_first_of_a_record_begins_where_its_samples_lead(problem, monkeypatch):
+    """It is thrown, and knocked back half way: only curves through its first half know how it was thrown."""
+    t = 0.01 * np.arange(SAMPLES)
+    knocked = np.minimum(t, 0.09 - t)
+    problem.windows.measured = np.tile(3.0 + 2.0 * knocked + 1e-4 * (-1.0) ** np.arange(SAMPLES), (WINDOWS, 1))
+    limits = []
+
+    def at(start, cost, motion):
+        seen = Prediction(motion, np.zeros((WINDOWS, 0)), np.zeros((WINDOWS, 2)))
+        return Minimum(start, {"cost": np.asarray(cost), "steps": 7, "predicted": seen})
+
+    def minimise(problem, start, how):
+        limits.append(int(how.limit))
+        y, dy = np.array(start.starts)[:, :, None]
+        # A link that starts at another speed than it did misses its knock.
+        return at(start, 50.0, np.where(abs(dy - 2.0) < 0.1, y + 2.0 * knocked, y + dy * t))
+
+    monkeypatch.setattr(module, "minimise", minimise)
+    starts = np.array([[3.0], [2.0]]) * np.ones(WINDOWS)
+    starts[:, [0, 21]] = [[3.3], [9.0]]
+    begin = Unknowns(np.zeros(3), starts, np.zeros((WINDOWS, 0)))
+    astray = minimise(problem, begin, Levenberg()).stats["predicted"].motion
+    found, taken = handed_on(problem, at(begin, 100.0, astray), Levenberg())
+    assert found.value.starts == pytest.approx(np.array([[3.0], [2.0]]) * np.ones(WINDOWS), rel=0.02)
+    assert limits == [60, 1, 1, 1, 60]
+    assert taken == 7
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("draw", [1, 7])
+def test_a_first_window_astray_bends_no_joint(monkeypatch, draw):
+    """Two noises of a joint whose first start was astray: the true model, begun at the truth, missed by 1.54 times the noise."""
+    pytest.importorskip("numba", reason="the generator needs numba")
+    from benchmarks.effect_strangers import make_case
+    from tests.independent import strangers
+
+    measure = strangers.measure
+    own = np.random.default_rng([7, draw])
+    monkeypatch.setattr(strangers, "measure", lambda truth, rng, x, z, step: measure(truth, own, x, z, step))
+    case = make_case(12, 10.0, 19)
+    base, free, _ = base_system(case.record, "joint", case.rig.inertia)
+    bench = Workbench(case.record, base, free, 0.2)
+    found = bench.fit({name: catalogue()[name](**values) for name, values in case.values.items()}, patience=60)
+    assert found.misfit < 1.03
+    for name in ("backlash", "stiffness", "damping"):
+        assert values_of(found.system)[name] == pytest.approx(getattr(case.rig, name), rel=0.01)
 
 
 @pytest.mark.slow

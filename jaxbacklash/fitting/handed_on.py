@@ -1,22 +1,27 @@
-"""Windows whose start has stuck begin again where the window before has ended.
+"""Windows whose start has stuck begin again where the window before has ended, or the first of a record where its samples lead.
 
 A window is fitted from where the smoothed data put the link. Where the link is knocked about in its play, a start a little
 off may meet the other edge first, and no small step leads back: one window of many then misses by far, and pulls the
-parameters with it. The windows beside it know better where the link was.
+parameters with it. The windows beside it know better where the link was. A record's first window has none before it, and its
+start was read off the end of a spline, where that is worst: curves through its first samples are tried instead.
 """
 
 from __future__ import annotations
+
+import itertools
 
 import equinox as eqx
 import numpy as np
 
 from .levenberg import Levenberg, Minimum, minimise
-from .shooting import Problem
+from .shooting import Problem, Unknowns
 
 WORSE, MATTERS, FEW = 20.0, 0.05, 0.05
 """A window has stuck that misses by so many times the median square; it matters where such windows hold that share of all misfit,
 and is an exception as long as they are no more than that share of all."""
 ROUNDS = 4
+CURVES, STRETCHES = (1, 2, 3), (2, 4, 8)
+"""Degrees of the curves that are laid through the first samples of a window, and the parts of it that they are laid through."""
 
 
 def handed_on(problem: Problem, found: Minimum, how: Levenberg) -> tuple[Minimum, int]:
@@ -34,9 +39,10 @@ def handed_on(problem: Problem, found: Minimum, how: Levenberg) -> tuple[Minimum
         stuck = stuck_windows(problem, found)
         if not stuck.size:
             break
-        starts = np.array(found.value.starts)
-        starts[:, stuck] = np.asarray(found.stats["predicted"].end)[stuck - 1].T
-        again = minimise(problem, eqx.tree_at(lambda u: u.starts, found.value, starts), how)
+        follows = _follows(problem)[stuck]
+        starts = led_in(problem, found, stuck[~follows])
+        starts[:, stuck[follows]] = np.asarray(found.stats["predicted"].end)[stuck[follows] - 1].T
+        again = minimise(problem, _begun(found, starts), how)
         taken += int(again.stats["steps"])
         if not float(again.stats["cost"]) < float(found.stats["cost"]):
             break
@@ -45,7 +51,7 @@ def handed_on(problem: Problem, found: Minimum, how: Levenberg) -> tuple[Minimum
 
 
 def stuck_windows(problem: Problem, found: Minimum) -> np.ndarray:
-    """Windows that have stuck where the one before has not, none where they are not what matters."""
+    """Windows that have stuck where the one before has not, or that none comes before, none where they are not what matters."""
     w = problem.windows
     missed = (np.asarray(found.stats["predicted"].motion) - np.asarray(w.measured)) * np.asarray(w.weight)
     with np.errstate(over="ignore", invalid="ignore"):  # a motion that ran away is no exception
@@ -57,5 +63,43 @@ def stuck_windows(problem: Problem, found: Minimum) -> np.ndarray:
     bad[full] = squares[full] > WORSE * np.median(squares[full])
     if np.sum(bad) > FEW * full.size or np.sum(squares[bad]) < MATTERS * np.sum(squares):
         return np.zeros(0, int)
-    follows = np.concatenate([[False], np.asarray(w.tie)[:-1] > 0.0])
-    return np.flatnonzero(bad & follows & ~np.concatenate([[True], bad[:-1]]))
+    follows = _follows(problem)
+    leads = follows & ~np.concatenate([[True], bad[:-1]])
+    # Where a link is that is not in the record cannot be read off it.
+    first = ~follows & (problem.system.observed != "T")
+    return np.flatnonzero(bad & (leads | first))
+
+
+def led_in(problem: Problem, found: Minimum, first: np.ndarray) -> np.ndarray:
+    """Starts (n, W) in which those of the ``first`` windows of records are the best that curves through their samples lead to."""
+    w = problem.windows
+    starts = np.array(found.value.starts)
+    if not first.size:
+        return starts
+    length = w.measured.shape[1]
+    predicted = found.stats["predicted"]
+    link = np.asarray(w.measured)[first]
+    if problem.system.observed == "z":
+        link = link + np.asarray(predicted.input)[first, :length]
+    t = float(w.panel) * w.every * np.arange(length)
+    least = np.full(first.size, np.inf)
+    for degree, part in itertools.product(CURVES, STRETCHES):
+        samples = length // part
+        if samples <= degree + 1:
+            continue
+        tried = np.array(found.value.starts)
+        tried[:2, first] = np.polynomial.polynomial.polyfit(t[:samples], link[:, :samples].T, degree)[:2]
+        motion = np.asarray(minimise(problem, _begun(found, tried), Levenberg(limit=1)).stats["predicted"].motion)
+        squares = np.nan_to_num(np.sum(((motion - w.measured) * w.weight)[first] ** 2, axis=1), nan=np.inf)
+        better = squares < least
+        starts[:, first[better]], least = tried[:, first[better]], np.minimum(squares, least)
+    return starts
+
+
+def _follows(problem: Problem) -> np.ndarray:
+    """Whether each window goes on from the one before it (W,)."""
+    return np.concatenate([[False], np.asarray(problem.windows.tie)[:-1] > 0.0])
+
+
+def _begun(found: Minimum, starts: np.ndarray) -> Unknowns:
+    return eqx.tree_at(lambda u: u.starts, found.value, starts)
