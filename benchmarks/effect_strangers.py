@@ -33,14 +33,17 @@ HIDES = (1, 2, 0, 1, 3, 1, 2, 0, 1, None, 2, 1)
 
 
 def hidden_set(rng, count: int | None, alone: int) -> tuple[str, ...]:
-    """Names of what a record hides; single effects go through the catalogue by turns, only one law of friction in the joint."""
+    """Names of what a record hides; single effects go through the catalogue by turns, only one law of friction in the joint.
+
+    No two that are one by definition: a preload beside a spring in the gap only moves the place where that spring rests.
+    """
     if count is None:
         return (str(rng.choice(OUTSIDE_CATALOGUE)),)
     if count == 1:
         return (SINGLES[alone % len(SINGLES)],)
     while True:
         names = tuple(str(n) for n in rng.choice(SINGLES, count, replace=False))
-        if sum(n in RUBBING for n in names) <= 1:
+        if sum(n in RUBBING for n in names) <= 1 and not {"gap_spring", "preload"} <= set(names):
             return names
 
 
