@@ -52,11 +52,8 @@ def handed_on(problem: Problem, found: Minimum, how: Levenberg) -> tuple[Minimum
 
 def stuck_windows(problem: Problem, found: Minimum) -> np.ndarray:
     """Windows that have stuck where the one before has not, or that none comes before, none where they are not what matters."""
-    w = problem.windows
-    missed = (np.asarray(found.stats["predicted"].motion) - np.asarray(w.measured)) * np.asarray(w.weight)
-    with np.errstate(over="ignore", invalid="ignore"):  # a motion that ran away is no exception
-        squares = np.sum(missed**2, axis=1)
-    full = np.flatnonzero(np.sum(np.asarray(w.weight) > 0.0, axis=1) > 0)
+    squares = _squares(problem, found)
+    full = np.flatnonzero(np.sum(np.asarray(problem.windows.weight) > 0.0, axis=1) > 0)
     if not full.size or not np.all(np.isfinite(squares[full])):
         return np.zeros(0, int)
     bad = np.zeros(squares.size, bool)
@@ -77,10 +74,9 @@ def led_in(problem: Problem, found: Minimum, first: np.ndarray) -> np.ndarray:
     if not first.size:
         return starts
     length = w.measured.shape[1]
-    predicted = found.stats["predicted"]
     link = np.asarray(w.measured)[first]
     if problem.system.observed == "z":
-        link = link + np.asarray(predicted.input)[first, :length]
+        link = link + np.asarray(found.stats["predicted"].input)[first, :length]
     t = float(w.panel) * w.every * np.arange(length)
     least = np.full(first.size, np.inf)
     for degree, part in itertools.product(CURVES, STRETCHES):
@@ -89,11 +85,19 @@ def led_in(problem: Problem, found: Minimum, first: np.ndarray) -> np.ndarray:
             continue
         tried = np.array(found.value.starts)
         tried[:2, first] = np.polynomial.polynomial.polyfit(t[:samples], link[:, :samples].T, degree)[:2]
-        motion = np.asarray(minimise(problem, _begun(found, tried), Levenberg(limit=1)).stats["predicted"].motion)
-        squares = np.nan_to_num(np.sum(((motion - w.measured) * w.weight)[first] ** 2, axis=1), nan=np.inf)
+        squares = _squares(problem, minimise(problem, _begun(found, tried), Levenberg(limit=1)))[first]
+        squares = np.nan_to_num(squares, nan=np.inf)
         better = squares < least
         starts[:, first[better]], least = tried[:, first[better]], np.minimum(squares, least)
     return starts
+
+
+def _squares(problem: Problem, found: Minimum) -> np.ndarray:
+    """Sum of the squares of what each window misses by, in units of the noise (W,)."""
+    w = problem.windows
+    missed = (np.asarray(found.stats["predicted"].motion) - np.asarray(w.measured)) * np.asarray(w.weight)
+    with np.errstate(over="ignore", invalid="ignore"):  # a motion that ran away is no exception
+        return np.asarray(np.sum(missed**2, axis=1))
 
 
 def _follows(problem: Problem) -> np.ndarray:
