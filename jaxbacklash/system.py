@@ -116,6 +116,10 @@ class System(eqx.Module):
             value = self.transmitted(t, state, drive)
         else:
             value = state[0] - drive.x if self.observed == "z" else state[0]
+        return self.observe(value)
+
+    def observe(self, value: Scalar) -> Scalar:
+        """What the measuring chain makes of the channel that it measures."""
         for name in sorted(self.effects):
             value = self.effects[name].observe(value)
         return value

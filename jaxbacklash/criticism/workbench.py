@@ -19,7 +19,7 @@ from ..fitting.handed_on import handed_on
 from ..fitting.held import held, search_held
 from ..fitting.levenberg import Levenberg, Minimum, minimise
 from ..fitting.search import ADEQUATE, LOOSE, NEAR, TIES, freedom, tie_windows
-from ..fitting.setup import first_guess, free_names, held_system, make_problem
+from ..fitting.setup import first_guess, free_names, held_system, make_problem, read_through
 from ..fitting.shooting import Problem, Unknowns
 from ..fitting.softened import through_softened
 from ..fitting.windows import Layout, Windows
@@ -184,6 +184,7 @@ class Workbench:
         if start is not None:
             same = start.system.state_names == problem.system.state_names
             own = start.unknowns.starts if same else np.concatenate([start.unknowns.starts[:2], unknowns.starts[2:]])
+            own = read_through(self.windows, np.asarray(own), problem.system, start.system)
             unknowns = Unknowns(unknowns.theta, own, start.unknowns.coefficients)
         if followed:
             unknowns = Unknowns(unknowns.theta, self._followed(effects, begin, unknowns.starts), unknowns.coefficients)

@@ -16,7 +16,7 @@ import numpy as np
 from .levenberg import Levenberg, Minimum, minimise
 from .shooting import Problem, Unknowns
 
-WORSE, MATTERS, FEW = 20.0, 0.05, 0.05
+WORSE, MATTERS, FEW = 5.0, 0.01, 0.05
 """A window has stuck that misses by so many times the median square; it matters where such windows hold that share of all misfit,
 and is an exception as long as they are no more than that share of all."""
 ROUNDS = 4

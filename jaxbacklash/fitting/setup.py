@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 
 from ..effects import Contact, Damper, Spring
@@ -22,6 +24,8 @@ MODELS = ("joint", "linear", "free")
 UNLIKE_A_LOOP = 0.5
 """Share of a transmitted force that its loop may leave unexplained."""
 PERIOD = 20.0
+NEWTON = 3
+"""Steps to the place that a measuring chain shows as it does: scales and shifts need one, a law of the user's own may need more."""
 """Samples in a period of the contact's resonance at the start, where a record of transmitted force has to tell the inertia."""
 
 
@@ -195,7 +199,34 @@ def first_guess(problem: Problem) -> Unknowns:
         starts = np.stack([np.broadcast_to(s, y.shape) for s in full])
     else:
         starts = np.stack([y, dy])
+    starts = read_through(w, starts, system)
     return Unknowns(np.zeros(problem.directions.shape[1]), starts, np.asarray(w.coefficients))
+
+
+def read_through(w: Windows, starts: np.ndarray, system: System, before: System | None = None) -> np.ndarray:
+    """Starts (n, W) moved to where a system's measuring chain shows what another's did, or what was measured.
+
+    Where an offset of the sensor gives way to a play off its centre, the link was elsewhere all the time.
+    """
+    if system.observed == "T":
+        return starts
+    y, dy = starts[0], starts[1]
+    z, dz = _relative(w, y, dy) if system.observed == "z" else (y, dy)
+    seen, slope = (z, np.ones_like(z)) if before is None else _chain(before, z)
+    place = z
+    for _ in range(NEWTON):
+        shown, own = _chain(system, place)
+        place = place + (seen - shown) / own
+    own = _chain(system, place)[1]
+    if not (np.all(np.isfinite(place)) and np.all(np.isfinite(slope / own))):
+        return starts
+    return np.concatenate([[y - z + place, dy - dz + dz * slope / own], starts[2:]])
+
+
+def _chain(system: System, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What the measuring chain shows of places (W,), and how it grows with them."""
+    shown, slope = jax.jvp(system.observe, (jnp.asarray(place),), (jnp.ones(place.shape),))
+    return np.asarray(shown), np.asarray(slope)
 
 
 def _relative(w: Windows, y: np.ndarray, dy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -200,7 +200,15 @@ def residuals(problem: Problem, unknowns: Unknowns, predicted: Prediction | None
 
 
 def _residuals(w: Windows, p: Prediction, following: Array, tie_weight: Array) -> tuple[Array, Array, Array]:
-    return (p.motion - w.measured) * w.weight, (p.input - w.input) * w.input_weight, (p.end - following) * tie_weight
+    return (
+        weighed(p.motion - w.measured, w.weight), weighed(p.input - w.input, w.input_weight),
+        weighed(p.end - following, tie_weight),
+    )  # fmt: skip
+
+
+def weighed(value: Array, weight: Array) -> Array:
+    """A value times its weight, nothing where it has none: there a motion may run away, and nobody measured it."""
+    return jnp.where(weight > 0.0, value, 0.0) * weight
 
 
 def tie_weights(problem: Problem, states: int) -> Array:
@@ -298,7 +306,9 @@ def _meet(shared: tuple[Problem, Array], lead: tuple[Window, Shot]) -> Met:
     basis, lagged = _input_tangents(problem, theta, own.local)
     motion_rows, end_rows = rows(w, waking(problem), theta, problem.active, shot.states, shot.u, shot.du, basis, lagged)
     tie_weight = tie_weights(problem, n)
-    weighted = jnp.concatenate([motion_rows * w.weight[:, None, :], end_rows * tie_weight[:, None, :]], axis=2)
+    weighted = jnp.concatenate(
+        [weighed(motion_rows, w.weight[:, None, :]), weighed(end_rows, tie_weight[:, None, :])], axis=2
+    )
     gram = jnp.einsum("wir,wjr->wij", weighted, weighted)
     unseen = jnp.sum(weighted[:, :, -n:] ** 2, axis=2)  # what a tie adds is no sample, and would damp every step
     slope = jnp.einsum("wir,wr->wi", weighted, jnp.concatenate([shot.motion, shot.tie], axis=1))
