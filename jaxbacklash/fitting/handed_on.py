@@ -14,7 +14,7 @@ import equinox as eqx
 import numpy as np
 
 from .levenberg import Levenberg, Minimum, minimise
-from .shooting import Problem, Unknowns
+from .shooting import Problem, Unknowns, weighed
 
 WORSE, MATTERS, FEW = 5.0, 0.01, 0.05
 """A window has stuck that misses by so many times the median square; it matters where such windows hold that share of all misfit,
@@ -95,7 +95,7 @@ def led_in(problem: Problem, found: Minimum, first: np.ndarray) -> np.ndarray:
 def _squares(problem: Problem, found: Minimum) -> np.ndarray:
     """Sum of the squares of what each window misses by, in units of the noise (W,)."""
     w = problem.windows
-    missed = (np.asarray(found.stats["predicted"].motion) - np.asarray(w.measured)) * np.asarray(w.weight)
+    missed = np.asarray(weighed(np.asarray(found.stats["predicted"].motion) - np.asarray(w.measured), np.asarray(w.weight)))
     with np.errstate(over="ignore", invalid="ignore"):  # a motion that ran away is no exception
         return np.asarray(np.sum(missed**2, axis=1))
 

@@ -24,9 +24,9 @@ MODELS = ("joint", "linear", "free")
 UNLIKE_A_LOOP = 0.5
 """Share of a transmitted force that its loop may leave unexplained."""
 PERIOD = 20.0
-NEWTON = 3
-"""Steps to the place that a measuring chain shows as it does: scales and shifts need one, a law of the user's own may need more."""
 """Samples in a period of the contact's resonance at the start, where a record of transmitted force has to tell the inertia."""
+NEWTON = 3
+"""Steps to where a measuring chain shows what it should: scales and shifts need one, a law of the user's own may need more."""
 
 
 def base_system(
@@ -214,13 +214,14 @@ def read_through(w: Windows, starts: np.ndarray, system: System, before: System 
     z, dz = _relative(w, y, dy) if system.observed == "z" else (y, dy)
     seen, slope = (z, np.ones_like(z)) if before is None else _chain(before, z)
     place = z
-    for _ in range(NEWTON):
-        shown, own = _chain(system, place)
-        place = place + (seen - shown) / own
-    own = _chain(system, place)[1]
-    if not (np.all(np.isfinite(place)) and np.all(np.isfinite(slope / own))):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # a chain may show nothing of a motion
+        for _ in range(NEWTON):
+            shown, own = _chain(system, place)
+            place = place + (seen - shown) / own
+        speed = dz * slope / _chain(system, place)[1]
+    if not np.all(np.isfinite([place, speed])):
         return starts
-    return np.concatenate([[y - z + place, dy - dz + dz * slope / own], starts[2:]])
+    return np.concatenate([[y - z + place, dy - dz + speed], starts[2:]])
 
 
 def _chain(system: System, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
