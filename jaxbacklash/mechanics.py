@@ -50,7 +50,7 @@ class Instant:
     0 in the play (between the two only inside a smoothed corner); the joint's ``stiffness`` [N m/rad], the link's
     ``inertia`` [kg m^2]; ``state``, the effect's own internal states, in the order of its ``states``; ``slip_z`` and
     ``slip_y``, the direction (-1, 0, 1) in which joint and link slide where a solver has settled it, None where the sign of
-    the speed must be taken, smoothed.
+    the speed must be taken, smoothed; ``drifted``, what the contact's stiffness is now, as a multiple of ``stiffness``.
     """
 
     t: Scalar
@@ -67,6 +67,7 @@ class Instant:
     state: tuple[Scalar, ...] = ()
     slip_z: Scalar | None = None
     slip_y: Scalar | None = None
+    drifted: Scalar = 1.0
 
     def seen_by(self, state: tuple[Scalar, ...]) -> Instant:
         """The same moment with one effect's internal states filled in."""
@@ -147,6 +148,10 @@ class AbstractEffect(eqx.Module):
     def reshape(self, play: Play, t: Scalar) -> Play:
         """The play as this effect leaves it."""
         return play
+
+    def drift(self, t: Scalar) -> Scalar:
+        """The contact stiffness now, as a multiple of the joint's; the torque that the change makes is this effect's own."""
+        return 1.0
 
     def observe(self, value: Scalar) -> Scalar:
         """The measured channel as this effect leaves it."""

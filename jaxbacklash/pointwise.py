@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import jax.numpy as jnp
@@ -30,15 +30,18 @@ def along(system: System, t: Any, y: Any, dy: Any, x: Any, dx: Any, force: Any =
     """What a system says along a motion, arrays (N,) or numbers, its internal states at rest: [s, rad, rad/s, N m]."""
     rows = [np.asarray(row, float) for row in np.broadcast_arrays(t, y, dy, x, dx, force)]
     size, (t, y, dy, x, dx, _) = rows[0].size, rows
-    z, dz, deflection, contact, stiffness, inertia, torque, joint = (
+    z, dz, deflection, contact, stiffness, inertia, drifted, torque, joint = (
         np.asarray(row)[:size] for row in _along(system, tuple(padded(row) for row in rows))
     )
-    return Pointwise(Instant(t, y, dy, x, dx, z, dz, deflection, contact, stiffness, inertia), torque, joint)
+    now = Instant(t, y, dy, x, dx, z, dz, deflection, contact, stiffness, inertia, drifted=drifted)
+    return Pointwise(now, torque, joint)
 
 
 def exerted(effect: AbstractEffect, now: Instant) -> np.ndarray:
     """Torque of one law without internal states (N,) at what it sees, arrays (N,) or numbers [N m]."""
-    seen = (now.t, now.y, now.dy, now.x, now.dx, now.z, now.dz, now.deflection, now.contact, now.stiffness, now.inertia)
+    seen = (
+        now.t, now.y, now.dy, now.x, now.dx, now.z, now.dz, now.deflection, now.contact, now.stiffness, now.inertia, now.drifted
+    )  # fmt: skip
     rows = tuple(padded(np.asarray(row, float)) for row in np.broadcast_arrays(*seen))
     return np.asarray(_exerted(effect, rows))[: now.t.size]
 
@@ -59,11 +62,12 @@ def torques(system: System, rows: Any) -> tuple[Instant, Any, Any]:
 
 @kept_jit
 def _exerted(effect: AbstractEffect, rows: Any) -> Any:
-    return jnp.broadcast_to(effect.torque(Instant(*rows)), rows[0].shape)
+    *seen, drifted = rows
+    return jnp.broadcast_to(effect.torque(replace(Instant(*seen), drifted=drifted)), rows[0].shape)
 
 
 @kept_jit
 def _along(system: System, rows: Any) -> tuple[Any, ...]:
     now, torque, joint = torques(system, rows)
-    said = (now.z, now.dz, now.deflection, now.contact, now.stiffness, now.inertia, torque, joint)
+    said = (now.z, now.dz, now.deflection, now.contact, now.stiffness, now.inertia, now.drifted, torque, joint)
     return tuple(jnp.broadcast_to(v, rows[0].shape) for v in said)

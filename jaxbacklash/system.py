@@ -142,7 +142,12 @@ class System(eqx.Module):
         z, dz = y - drive.x, dy - drive.dx
         deflection, contact = self._deflection(t, z, side)
         stiffness = jnp.zeros_like(z) if self.contact is None else self.contact.stiffness
-        return Instant(t, y, dy, drive.x, drive.dx, z, dz, deflection, contact, stiffness, self.inertia)
+        drifted: Any = 1.0
+        for name in sorted(self.effects):
+            drifted = drifted * self.effects[name].drift(t)
+        return Instant(
+            t, y, dy, drive.x, drive.dx, z, dz, deflection, contact, stiffness, self.inertia, drifted=drifted
+        )
 
     def torques(self, now: Instant, state: State) -> tuple[Scalar, Scalar]:
         """All torque on the link but the driving force, and the part of it that acts through the joint [N m]."""

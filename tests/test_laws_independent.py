@@ -106,6 +106,17 @@ def test_windows_follow_the_generator(names, motion):
     assert np.quantile(error, 0.99) < 3e-6
 
 
+TOGETHER = tuple(n for n in LAWS if n in _COLUMNS and n not in (*DRY, *HIDDEN, "flexible_link"))
+"""Laws without friction and internal states: what one makes of the joint, the others must see."""
+
+
+@pytest.mark.parametrize("beside", [(), ("coulomb_joint", "coulomb_ground"), ("lugre", "flexible_link")], ids="-".join)
+def test_all_laws_together_follow_the_generator(beside):
+    error = window_errors((*TOGETHER, *beside), MOTIONS["multisine"](), 10.0)
+    assert np.median(error) < 1e-7
+    assert np.quantile(error, 0.99) < 3e-6
+
+
 def test_friction_without_a_play_stops_a_link_where_it_should():
     """A free axis coasts to J v^2 / 2 Tc and stays there; on a spring it stays wherever friction can hold it."""
     path = simulate(free_axis(3.0, 0.0).with_effects(CoulombGround(2.0)), duration=1.5, y0=0.0, dy0=0.5)

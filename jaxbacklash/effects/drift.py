@@ -20,5 +20,8 @@ class StiffnessDrift(AbstractEffect):
 
     r: Scalar = param(unit="1/s", null=0.0, scale=1e-3)
 
+    def drift(self, t: Scalar) -> Scalar:
+        return 1.0 + self.r * t
+
     def torque(self, now: Instant) -> Scalar:
         return -(self.r * now.t) * (now.stiffness * now.deflection)

@@ -20,12 +20,15 @@ class CubicStiffness(AbstractEffect):
 
 
 class AsymmetricStiffness(AbstractEffect):
-    r"""Contact stiffness :math:`k(1+a)` above the play and :math:`k(1-a)` below: :math:`T = -a k |\delta|` beside the spring."""
+    r"""Contact stiffness :math:`k(1+a)` above the play and :math:`k(1-a)` below: :math:`T = -a k |\delta|` beside the spring.
+
+    Where k drifts, both sides drift with it.
+    """
 
     a: Scalar = param(unit="1", null=0.0, lower=-1.0, upper=1.0, scale=0.01)
 
     def torque(self, now: Instant) -> Scalar:
-        return -self.a * (now.stiffness * jnp.abs(now.deflection))
+        return -self.a * (now.stiffness * now.drifted * jnp.abs(now.deflection))
 
 
 class GapSpring(AbstractEffect):
