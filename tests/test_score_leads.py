@@ -1,0 +1,55 @@
+"""A score is not spoilt by what a law remembers, where a fit had let its windows go."""
+
+import importlib
+
+import numpy as np
+import pytest
+
+from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.effects import Dahl
+from jaxbacklash.fitting.score import score
+from jaxbacklash.fitting.setup import base_system
+from jaxbacklash.fitting.shooting import Unknowns
+from tests.hidden import hidden
+
+module = importlib.import_module("jaxbacklash.fitting.score")
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    """A bench, the problem of a joint that rubs as Dahl says, and the unknowns of its fitted trajectory."""
+    record, rig, _, _ = hidden("dahl", "multisine", 21, seconds=8.0, sigma=2000.0, Fc=6.0)
+    base, free, _ = base_system(record, "joint", rig.inertia)
+    bench = Workbench(record, base, free, 0.2)
+    loose = bench.fit({"dahl": Dahl(6.0, 2000.0)}, patience=60)
+    trial = bench.fit(bench.effects(loose), joint=loose.system, tied=True, followed=True, patience=60)
+    problem, _ = bench.problem(bench.effects(trial), trial.system)
+    return bench, problem, Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
+
+
+def jumping(unknowns, *windows, to=7000.0):
+    starts = np.array(unknowns.starts)
+    starts[2, list(windows)] = to
+    return Unknowns(unknowns.theta, starts, unknowns.coefficients)
+
+
+@pytest.mark.parametrize("every", [1, 6], ids=["all", "a few"])
+def test_windows_whose_memory_jumps_begin_where_the_one_before_ends(fitted, monkeypatch, every):
+    bench, problem, unknowns = fitted
+    right = score(problem, unknowns, bench.layout, group=bench.group)[0][0]
+    assert right.rms < 1.05
+    inner = [k for k in range(bench.layout.windows[0]) if k % bench.group][::every]
+    found = score(problem, jumping(unknowns, *inner), bench.layout, group=bench.group)[0][0]
+    assert found.rms == pytest.approx(right.rms, rel=0.02)
+    assert found.median == pytest.approx(right.median, rel=0.02)
+    monkeypatch.setattr(module, "_led_on", lambda problem, begin: begin)
+    assert score(problem, jumping(unknowns, *inner), bench.layout, group=bench.group)[0][0].rms > 2.0
+
+
+def test_what_does_not_jump_begins_as_it_was_fitted(fitted, monkeypatch):
+    bench, problem, unknowns = fitted
+    begun, minimise = [], module.minimise
+    monkeypatch.setattr(module, "minimise", lambda *given: begun.append(given[1].starts) or minimise(*given))
+    score(problem, unknowns, bench.layout, group=bench.group)
+    assert len(begun) == 2
+    assert all(np.array_equal(starts, unknowns.starts) for starts in begun)
