@@ -8,7 +8,6 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from ..fitting.search import ADEQUATE, silent
-from ..mechanics import AbstractEffect
 from .candidates import Candidate, may_join, rank
 from .evidence import (
     AS_WELL,
@@ -33,6 +32,7 @@ from .loose import by_free_windows
 from .memories import Member, families, may_replace, members
 from .steps import Step, leading
 from .tried import LOOSER, WHOLE, follows
+from .two_for_one import two_for_one
 from .under_noise import delayed
 from .unseen import GLIMPSED, MOST_EFFECTS, TRIED, Unseen
 from .workbench import Trial, Workbench, adequate
@@ -231,6 +231,7 @@ class Search(Unseen):
 
         for name in sorted(final.names):
             for other in self.instead(steps, name):
+                other = two_for_one(self, final, other)
                 needless: tuple[str, ...] = ()
                 if other.criterion - final.criterion < demanded(self.bench) and adequate(other):
                     # What does as well may do so without what took the place: where it led, the rest was stuck before.
@@ -242,11 +243,10 @@ class Search(Unseen):
                         return self.swap([*steps[:-1], self.freed(steps[-1], relieved)], seen)
                     # What stood beside the effect that is replaced may have made up for it.
                     other, gone = self.prune(other if other.done else self.finish(other))
-                    if added := next(iter(other.names - final.names), None):
+                    if added := next(iter(sorted(other.names - final.names)), None):
                         step = Step(other, added, (*needless, *gone), ())
                     else:
-                        lost = sorted(final.names - other.names)
-                        step = replace(steps[-1], trial=other, dropped=(*steps[-1].dropped, *lost))
+                        step = replace(steps[-1], trial=other, dropped=(*steps[-1].dropped, *sorted(final.names - other.names)))
                     path = self.reduced([*steps[:-1], step])
                     if new(path[-1].trial):
                         return self.swap(path, seen)
@@ -493,8 +493,7 @@ class Search(Unseen):
             guesses = law.guesses(start.system, self.bench.quick.motion)
             self.progress(f"trying {name}", 0.6)
             for effect in self.bench.quick.choose(start.system, start.free, guesses, keep=2):
-                effects: dict[str, AbstractEffect] = {**self.bench.effects(start), name: effect}
-                found.append(self.keep(self.bench.fit(effects, start, tied=False)))
+                found.append(self.keep(self.bench.fit({**self.bench.effects(start), name: effect}, start, tied=False)))
                 if found[-1].misfit < NOISE_FLOOR:
                     break
         return found
