@@ -102,21 +102,17 @@ def _led_on(problem: Problem, begin: Unknowns) -> Unknowns:
     for _ in range(LEADS):
         tried = Unknowns(begin.theta, starts.copy(), begin.coefficients)
         at = minimise(problem, tried, Levenberg(limit=1))
-        motion, _, tie = (np.asarray(r) for r in kept_residuals(problem, tried, at.stats["predicted"]))
-        cost = _half_squares(motion) + _half_squares(tie)
+        predicted, cost = at.stats["predicted"], float(at.stats["cost"])
         if not cost < least:
             break
         best, least = tried, cost
+        tie = np.asarray(kept_residuals(problem, tried, predicted)[2])
         far = runs_on[np.abs(tie[runs_on - 1]).max(axis=1) > WIDE]
-        if not far.size or not np.all(np.isfinite(np.asarray(at.stats["predicted"].end)[far - 1])):
+        ends = np.asarray(predicted.end)[far - 1]
+        if not far.size or not np.all(np.isfinite(ends)):
             break
-        starts[:, far] = np.asarray(at.stats["predicted"].end)[far - 1].T
+        starts[:, far] = ends.T
     return best
-
-
-def _half_squares(missed: np.ndarray) -> float:
-    with np.errstate(over="ignore", invalid="ignore"):  # a motion that ran away is no exception
-        return 0.5 * float(np.sum(missed**2))
 
 
 def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout, group: int, record: int) -> Score:
