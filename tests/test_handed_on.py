@@ -32,7 +32,7 @@ def problem():
     tie[20] = 0.0  # another record begins with window 21
     zero = np.zeros((WINDOWS, SAMPLES))
     windows = SimpleNamespace(measured=zero, weight=zero + 1.0, tie=tie, panel=0.01, every=1)
-    return SimpleNamespace(windows=windows, system=SimpleNamespace(observed="y"))
+    return SimpleNamespace(windows=windows, system=SimpleNamespace(observed="y", observe=lambda value: value))
 
 
 def missing(*far):
@@ -79,11 +79,13 @@ def test_the_start_of_a_link_that_is_not_seen_is_not_read_off_its_samples(proble
     assert not stuck_windows(problem, ended(missing(21), 1.0)).size
 
 
-def test_the_first_of_a_record_begins_where_its_samples_lead(problem, monkeypatch):
+@pytest.mark.parametrize("offset", [0.0, 0.5])
+def test_the_first_of_a_record_begins_where_its_samples_lead(problem, monkeypatch, offset):
     """It is thrown, and knocked back half way: only curves through its first half know how it was thrown."""
+    problem.system.observe = lambda value: value + offset
     t = 0.01 * np.arange(SAMPLES)
     knocked = np.minimum(t, 0.09 - t)
-    problem.windows.measured = np.tile(3.0 + 2.0 * knocked + 1e-4 * (-1.0) ** np.arange(SAMPLES), (WINDOWS, 1))
+    problem.windows.measured = np.tile(offset + 3.0 + 2.0 * knocked + 1e-4 * (-1.0) ** np.arange(SAMPLES), (WINDOWS, 1))
     limits = []
 
     def at(start, cost, motion):
@@ -94,7 +96,7 @@ def test_the_first_of_a_record_begins_where_its_samples_lead(problem, monkeypatc
         limits.append(int(how.limit))
         y, dy = np.array(start.starts)[:, :, None]
         # A link that starts at another speed than it did misses its knock.
-        return at(start, 50.0, np.where(abs(dy - 2.0) < 0.1, y + 2.0 * knocked, y + dy * t))
+        return at(start, 50.0, offset + np.where(abs(dy - 2.0) < 0.1, y + 2.0 * knocked, y + dy * t))
 
     monkeypatch.setattr(module, "minimise", minimise)
     starts = np.array([[3.0], [2.0]]) * np.ones(WINDOWS)

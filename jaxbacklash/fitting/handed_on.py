@@ -14,6 +14,7 @@ import equinox as eqx
 import numpy as np
 
 from .levenberg import Levenberg, Minimum, minimise
+from .setup import read_through
 from .shooting import Problem, Unknowns, weighed
 
 WORSE, MATTERS, FEW = 5.0, 0.01, 0.05
@@ -85,6 +86,7 @@ def led_in(problem: Problem, found: Minimum, first: np.ndarray) -> np.ndarray:
             continue
         tried = np.array(found.value.starts)
         tried[:2, first] = np.polynomial.polynomial.polyfit(t[:samples], link[:, :samples].T, degree)[:2]
+        tried[:, first] = read_through(w, tried, problem.system)[:, first]
         squares = _squares(problem, minimise(problem, _begun(found, tried), Levenberg(limit=1)))[first]
         squares = np.nan_to_num(squares, nan=np.inf)
         better = squares < least
