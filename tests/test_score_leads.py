@@ -1,4 +1,4 @@
-"""A score is not spoilt by what a law remembers, where a fit had let its windows go."""
+"""A score is not spoilt by what a law remembers, where a fit had let its windows go or nothing but the record is known."""
 
 import importlib
 
@@ -7,9 +7,11 @@ import pytest
 
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.effects import Dahl
+from jaxbacklash.fitting.compare import compare
 from jaxbacklash.fitting.score import score
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.fitting.shooting import Unknowns
+from jaxbacklash.parameters import with_values
 from tests.hidden import hidden
 
 module = importlib.import_module("jaxbacklash.fitting.score")
@@ -42,7 +44,7 @@ def test_windows_whose_memory_jumps_begin_where_the_one_before_ends(fitted, monk
     found = score(problem, jumping(unknowns, *inner), bench.layout, group=bench.group)[0][0]
     assert found.rms == pytest.approx(right.rms, rel=0.02)
     assert found.median == pytest.approx(right.median, rel=0.02)
-    monkeypatch.setattr(module, "_led_on", lambda problem, begin: begin)
+    monkeypatch.setattr(module, "led_on", lambda problem, begin, follows: begin)
     assert score(problem, jumping(unknowns, *inner), bench.layout, group=bench.group)[0][0].rms > 2.0
 
 
@@ -51,5 +53,15 @@ def test_what_does_not_jump_begins_as_it_was_fitted(fitted, monkeypatch):
     begun, minimise = [], module.minimise
     monkeypatch.setattr(module, "minimise", lambda *given: begun.append(given[1].starts) or minimise(*given))
     score(problem, unknowns, bench.layout, group=bench.group)
-    assert len(begun) == 2
-    assert all(np.array_equal(starts, unknowns.starts) for starts in begun)
+    (starts,) = begun
+    np.testing.assert_allclose(starts, unknowns.starts, atol=0.05)  # the memory is a share of the sliding torque
+
+
+@pytest.mark.parametrize(("kind", "seed"), [("chirp", 21), ("multisine", 22), ("modulated", 22)])
+def test_a_true_model_predicts_a_record_of_which_nothing_else_is_known(kind, seed):
+    record, rig, _, _ = hidden("dahl", kind, seed, seconds=8.0, sigma=2000.0, Fc=6.0)
+    base, _, _ = base_system(record, "joint", rig.inertia)
+    true = with_values(base, {name: getattr(rig, name) for name in ("backlash", "stiffness", "damping")})
+    score = compare(true.with_effects(Dahl(6.0, 2000.0)), record).score
+    assert score.median < 1.05
+    assert score.rms < 1.05

@@ -40,9 +40,9 @@ def handed_on(problem: Problem, found: Minimum, how: Levenberg) -> tuple[Minimum
         stuck = stuck_windows(problem, found)
         if not stuck.size:
             break
-        follows = _follows(problem)[stuck]
-        starts = led_in(problem, found, stuck[~follows])
-        starts[:, stuck[follows]] = np.asarray(found.stats["predicted"].end)[stuck[follows] - 1].T
+        on = follows(problem)[stuck]
+        starts = led_in(problem, found, stuck[~on])
+        starts[:, stuck[on]] = np.asarray(found.stats["predicted"].end)[stuck[on] - 1].T
         again = minimise(problem, _begun(found, starts), how)
         taken += int(again.stats["steps"])
         if not float(again.stats["cost"]) < float(found.stats["cost"]):
@@ -53,7 +53,7 @@ def handed_on(problem: Problem, found: Minimum, how: Levenberg) -> tuple[Minimum
 
 def stuck_windows(problem: Problem, found: Minimum) -> np.ndarray:
     """Windows that have stuck where the one before has not, or that none comes before, none where they are not what matters."""
-    squares = _squares(problem, found)
+    squares = squares_of(problem, found)
     full = np.flatnonzero(np.sum(np.asarray(problem.windows.weight) > 0.0, axis=1) > 0)
     if not full.size or not np.all(np.isfinite(squares[full])):
         return np.zeros(0, int)
@@ -61,10 +61,10 @@ def stuck_windows(problem: Problem, found: Minimum) -> np.ndarray:
     bad[full] = squares[full] > WORSE * np.median(squares[full])
     if np.sum(bad) > FEW * full.size or np.sum(squares[bad]) < MATTERS * np.sum(squares):
         return np.zeros(0, int)
-    follows = _follows(problem)
-    leads = follows & ~np.concatenate([[True], bad[:-1]])
+    on = follows(problem)
+    leads = on & ~np.concatenate([[True], bad[:-1]])
     # Where a link is that is not in the record cannot be read off it.
-    first = ~follows & (problem.system.observed != "T")
+    first = ~on & (problem.system.observed != "T")
     return np.flatnonzero(bad & (leads | first))
 
 
@@ -87,14 +87,14 @@ def led_in(problem: Problem, found: Minimum, first: np.ndarray) -> np.ndarray:
         tried = np.array(found.value.starts)
         tried[:2, first] = np.polynomial.polynomial.polyfit(t[:samples], link[:, :samples].T, degree)[:2]
         tried[:, first] = read_through(w, tried, problem.system)[:, first]
-        squares = _squares(problem, minimise(problem, _begun(found, tried), Levenberg(limit=1)))[first]
+        squares = squares_of(problem, minimise(problem, _begun(found, tried), Levenberg(limit=1)))[first]
         squares = np.nan_to_num(squares, nan=np.inf)
         better = squares < least
         starts[:, first[better]], least = tried[:, first[better]], np.minimum(squares, least)
     return starts
 
 
-def _squares(problem: Problem, found: Minimum) -> np.ndarray:
+def squares_of(problem: Problem, found: Minimum) -> np.ndarray:
     """Sum of the squares of what each window misses by, in units of the noise (W,)."""
     w = problem.windows
     missed = np.asarray(weighed(np.asarray(found.stats["predicted"].motion) - np.asarray(w.measured), np.asarray(w.weight)))
@@ -102,7 +102,7 @@ def _squares(problem: Problem, found: Minimum) -> np.ndarray:
         return np.asarray(np.sum(missed**2, axis=1))
 
 
-def _follows(problem: Problem) -> np.ndarray:
+def follows(problem: Problem) -> np.ndarray:
     """Whether each window goes on from the one before it (W,)."""
     return np.concatenate([[False], np.asarray(problem.windows.tie)[:-1] > 0.0])
 

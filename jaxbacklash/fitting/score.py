@@ -13,6 +13,8 @@ import equinox as eqx
 import numpy as np
 
 from ..compiled import kept_jit
+from .handed_on import follows
+from .led_on import led_on
 from .levenberg import Levenberg, minimise
 from .shooting import Problem, Unknowns, residuals
 from .windows import Layout
@@ -21,9 +23,6 @@ NEAR = 1e-4
 """How much of half the sum of squares, in units of the noise, may be left to gain a window when a score is told."""
 CLEARLY = 1e-3
 """The same, as a share of what the misfit exceeds the noise by."""
-LEADS, WIDE = 4, 100.0
-"""How often windows may be begun anew where the one before ends, as that moves what comes after; and how many times what a tie
-allows the motion must jump for that."""
 kept_residuals = kept_jit(residuals)
 
 
@@ -82,37 +81,11 @@ def score(
     begin = Unknowns(np.zeros(unknowns.theta.shape), unknowns.starts, unknowns.coefficients)
     near = NEAR * max(1, int(problem.windows.used))
     # An error of a model that is clearly wrong is quoted to three digits: its starts need not creep on for a fourth.
-    solution = minimise(still, _led_on(still, begin), Levenberg(atol=near, rtol=CLEARLY, damping=1e-6, limit=20))
+    solution = minimise(still, led_on(still, begin, follows(problem)), Levenberg(atol=near, rtol=CLEARLY, damping=1e-6, limit=20))
     found = solution.value
     predicted = solution.stats["predicted"]
     scores = tuple(_summarise(still, found, predicted, layout, group, i) for i in range(len(layout.first)))
     return scores, Unknowns(unknowns.theta, found.starts, found.coefficients)
-
-
-def _led_on(problem: Problem, begin: Unknowns) -> Unknowns:
-    """Starts of a law that remembers, with windows begun where the one before has ended if they began far from there.
-
-    A fit that has let its windows go leaves jumps. What a memory jumps by has no scale of its own, and may be so much that no
-    search closes the gap, or that it loses other windows over it.
-    """
-    if begin.starts.shape[0] == 2:
-        return begin
-    starts, best, least = np.array(begin.starts), begin, np.inf
-    runs_on = np.flatnonzero(np.asarray(problem.windows.tie)[:-1] > 0.0) + 1
-    for _ in range(LEADS):
-        tried = Unknowns(begin.theta, starts.copy(), begin.coefficients)
-        at = minimise(problem, tried, Levenberg(limit=1))
-        predicted, cost = at.stats["predicted"], float(at.stats["cost"])
-        if not cost < least:
-            break
-        best, least = tried, cost
-        tie = np.asarray(kept_residuals(problem, tried, predicted)[2])
-        far = runs_on[np.abs(tie[runs_on - 1]).max(axis=1) > WIDE]
-        ends = np.asarray(predicted.end)[far - 1]
-        if not far.size or not np.all(np.isfinite(ends)):
-            break
-        starts[:, far] = ends.T
-    return best
 
 
 def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout, group: int, record: int) -> Score:

@@ -192,15 +192,17 @@ def first_guess(problem: Problem) -> Unknowns:
         # A link that something holds, where its contact would carry the first force of the window.
         level = 10.0 / np.max(np.asarray(w.weight))
         y, dy = y + np.asarray(place(system, w.t0, np.asarray(w.measured)[:, 0], level)), 0.0 * dy
-    hidden = len(system.state_names) - 2
-    if hidden:
-        z, dz = _relative(w, y, dy)
-        full = system.rest(w.t0, y, dy, Drive(y - z, dy - dz, 0.0 * y))
-        starts = np.stack([np.broadcast_to(s, y.shape) for s in full])
-    else:
-        starts = np.stack([y, dy])
-    starts = read_through(w, starts, system)
+    starts = read_through(w, at_rest(w, system, y, dy), system)
     return Unknowns(np.zeros(problem.directions.shape[1]), starts, np.asarray(w.coefficients))
+
+
+def at_rest(w: Windows, system: System, y: np.ndarray, dy: np.ndarray) -> np.ndarray:
+    """Starts (n, W) of a link that is at ``y``, ``dy`` (W,): what laws remember is what they would of nothing before that."""
+    if len(system.state_names) == 2:
+        return np.stack([y, dy])
+    z, dz = _relative(w, y, dy)
+    full = system.rest(w.t0, y, dy, Drive(y - z, dy - dz, 0.0 * y))
+    return np.stack([np.broadcast_to(s, y.shape) for s in full])
 
 
 def read_through(w: Windows, starts: np.ndarray, system: System, before: System | None = None) -> np.ndarray:
