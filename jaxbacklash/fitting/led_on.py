@@ -14,8 +14,9 @@ from .levenberg import Levenberg, Minimum, minimise
 from .setup import at_rest
 from .shooting import Problem, Unknowns
 
-LEADS = 8
-"""How often windows are begun anew at most: what the first of them remembers reaches one more each time."""
+LEADS, GAIN = 8, 0.01
+"""How often windows are begun anew at most, what one remembers reaching one more each time; and the share of half the sum of
+squares that this has to gain to go on."""
 
 
 def led_on(problem: Problem, begin: Unknowns, follows: np.ndarray) -> Unknowns:
@@ -30,11 +31,12 @@ def led_on(problem: Problem, begin: Unknowns, follows: np.ndarray) -> Unknowns:
     if begin.starts.shape[0] == 2:
         return begin
     best = _run(problem, begin)
-    at = _run(problem, _first_led_in(problem, best, ~follows))
+    led = _first_led_in(problem, best, ~follows)
+    at = best if led is best.value else _run(problem, led)
     for _ in range(LEADS):
         before, at = at, _run(problem, _passed_on(at, follows))
         best = min(best, before, at, key=_cost)
-        if not _cost(at) < _cost(before):
+        if not _cost(at) < (1.0 - GAIN) * _cost(before):
             break
     return best.value
 
