@@ -5,7 +5,8 @@
 A twelfth of the records hides something outside the catalogue, a sixth nothing, the rest one effect, two or three, drawn at
 random; see `tests.independent.strangers`. The simulation is non-smooth and shares nothing with the package. As in
 `benchmarks.effect_recovery` a set is identifiable when every effect in it stands 6 standard errors from zero in a fit of the
-true model. Every answer is a JSON file in --work, so that a killed run goes on where it was. It needs numba.
+true model, and a second record of each joint, under another excitation, is only predicted. Every answer is a JSON file in
+--work, so that a killed run goes on where it was. It needs numba.
 """
 
 from __future__ import annotations
@@ -53,10 +54,11 @@ def make_case(number: int, noise: float, seed: int) -> Case:
     count = HIDES[number % len(HIDES)]
     alone = sum(h == 1 for h in HIDES) * (number // len(HIDES)) + sum(h == 1 for h in HIDES[: number % len(HIDES)])
     hidden = hidden_set(rng, count, alone + 4 * seed)
-    made = make_stranger(rng, hidden, EXCITATIONS[int(rng.integers(len(EXCITATIONS)))], noise)
+    which = int(rng.integers(len(EXCITATIONS)))
+    made = make_stranger(rng, hidden, (EXCITATIONS[which], EXCITATIONS[(which + 1) % len(EXCITATIONS)]), noise)
     # Some of these joints move further than any that is believed without being told the unit.
-    record = Record(made.seen["t"], {n: made.seen[n] for n in "xz"}, confirmed=frozenset("txz"))
-    return Case(number, hidden, made.rig, made.values, record, made.kind)
+    record, heldout = (Record(r["t"], {n: r[n] for n in "xz"}, confirmed=frozenset("txz")) for r in (made.seen, made.again))
+    return Case(number, hidden, made.rig, made.values, record, made.kind, heldout)
 
 
 def answered(work: Path, number: int, noise: float, seed: int) -> dict[str, Any]:
@@ -66,7 +68,7 @@ def answered(work: Path, number: int, noise: float, seed: int) -> dict[str, Any]
         return dict(json.loads(path.read_text(encoding="utf-8")))
     case = make_case(number, noise, seed)
     begin = time.perf_counter()
-    found = refine(case.record, inertia=case.rig.inertia)
+    found = refine(case.record, heldout=case.heldout, inertia=case.rig.inertia)
     row = judge(case, found, time.perf_counter() - begin)
     row |= {"rate": case.record.rate_hz, "samples": case.record.samples, "values": case.values}
     path.parent.mkdir(parents=True, exist_ok=True)

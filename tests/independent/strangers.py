@@ -62,7 +62,8 @@ TOUCHES, DRAWS = 0.03, 100
 
 @dataclass(frozen=True)
 class Stranger:
-    """A record t [s], x, z [rad] as measured, with its answer: the rig, its effects' values, and how it was made."""
+    """A record t [s], x, z [rad] as measured and ``again`` another of the same joint under another excitation; with their answer,
+    the rig, its effects' values, and how the first was made."""
 
     rig: Rig
     values: dict[str, dict[str, float]]
@@ -70,6 +71,7 @@ class Stranger:
     kind: str
     noise: float
     step: float | None
+    again: dict[str, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -94,8 +96,9 @@ class Scale:
         return {name: {k: v * self.of(UNITS[name][k]) for k, v in of.items()} for name, of in values.items()}
 
 
-def make_stranger(rng, hidden: tuple[str, ...], kind: str, noise: float = 1.0) -> Stranger:
-    """A stranger that hides ``hidden`` under an excitation of ``kind``; ``noise`` multiplies what its encoders have."""
+def make_stranger(rng, hidden: tuple[str, ...], kinds: tuple[str, str], noise: float = 1.0) -> Stranger:
+    """A stranger that hides ``hidden``, under two kinds of excitation; ``noise`` multiplies what its encoders have."""
+    kind, other = kinds
     slow, rate, duration = _clock(rng)
     for _ in range(DRAWS):
         rig = _rig(rng)
@@ -115,9 +118,12 @@ def make_stranger(rng, hidden: tuple[str, ...], kind: str, noise: float = 1.0) -
     scale = Scale(*(float(10.0 ** rng.uniform(-w, w)) for w in (2.0, 0.0 if "gravity" in hidden else 0.5)), slow)
     if "torque_ripple" in hidden:  # as many teeth as a drive has
         scale = Scale(scale.inertia, min(scale.angle, values["torque_ripple"]["N"] / 5.0), scale.time)
-    grown = {"t": seen["t"] * scale.time, "x": seen["x"] * scale.angle, "z": seen["z"] * scale.angle}
+    last = rng.spawn(1)[0]
+    truth = simulate_truth(rig, values, make_excitation(last, other, duration, scale=size), rate, duration)
+    again = measure(truth, last, sigma_x, sigma_z, step)
+    grown, anew = ({n: r[n] * (scale.time if n == "t" else scale.angle) for n in "txz"} for r in (seen, again))
     return Stranger(scale.rig(rig), scale.values(values), grown, kind, sigma_z * scale.angle,
-                    None if step is None else step * scale.angle)  # fmt: skip
+                    None if step is None else step * scale.angle, anew)  # fmt: skip
 
 
 def _clock(rng) -> tuple[float, float, float]:
