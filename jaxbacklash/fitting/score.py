@@ -23,6 +23,8 @@ NEAR = 1e-4
 """How much of half the sum of squares, in units of the noise, may be left to gain a window when a score is told."""
 CLEARLY = 1e-3
 """The same, as a share of what the misfit exceeds the noise by."""
+STEPS, REMEMBERED = 20, 60
+"""Steps allowed to a score; and to that of a law that remembers, which creeps where noise hides what is remembered."""
 kept_residuals = kept_jit(residuals)
 
 
@@ -81,7 +83,8 @@ def score(
     begin = Unknowns(np.zeros(unknowns.theta.shape), unknowns.starts, unknowns.coefficients)
     near = NEAR * max(1, int(problem.windows.used))
     # An error of a model that is clearly wrong is quoted to three digits: its starts need not creep on for a fourth.
-    solution = minimise(still, led_on(still, begin, follows(problem)), Levenberg(atol=near, rtol=CLEARLY, damping=1e-6, limit=20))
+    how = Levenberg(atol=near, rtol=CLEARLY, damping=1e-6, limit=STEPS if begin.starts.shape[0] == 2 else REMEMBERED)
+    solution = minimise(still, led_on(still, begin, follows(problem)), how)
     found = solution.value
     predicted = solution.stats["predicted"]
     scores = tuple(_summarise(still, found, predicted, layout, group, i) for i in range(len(layout.first)))
