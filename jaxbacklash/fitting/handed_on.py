@@ -43,7 +43,7 @@ def handed_on(problem: Problem, found: Minimum, how: Levenberg) -> tuple[Minimum
         on = follows(problem)[stuck]
         starts = led_in(problem, found, stuck[~on])
         starts[:, stuck[on]] = np.asarray(found.stats["predicted"].end)[stuck[on] - 1].T
-        again = minimise(problem, _begun(found, starts), how)
+        again = minimise(problem, begun(found, starts), how)
         taken += int(again.stats["steps"])
         if not float(again.stats["cost"]) < float(found.stats["cost"]):
             break
@@ -87,7 +87,7 @@ def led_in(problem: Problem, found: Minimum, first: np.ndarray) -> np.ndarray:
         tried = np.array(found.value.starts)
         tried[:2, first] = np.polynomial.polynomial.polyfit(t[:samples], link[:, :samples].T, degree)[:2]
         tried[:, first] = read_through(w, tried, problem.system)[:, first]
-        squares = squares_of(problem, minimise(problem, _begun(found, tried), Levenberg(limit=1)))[first]
+        squares = squares_of(problem, minimise(problem, begun(found, tried), Levenberg(limit=1)))[first]
         squares = np.nan_to_num(squares, nan=np.inf)
         better = squares < least
         starts[:, first[better]], least = tried[:, first[better]], np.minimum(squares, least)
@@ -107,5 +107,6 @@ def follows(problem: Problem) -> np.ndarray:
     return np.concatenate([[False], np.asarray(problem.windows.tie)[:-1] > 0.0])
 
 
-def _begun(found: Minimum, starts: np.ndarray) -> Unknowns:
+def begun(found: Minimum, starts: np.ndarray) -> Unknowns:
+    """The unknowns of a fit with other starts (n, W)."""
     return eqx.tree_at(lambda u: u.starts, found.value, starts)

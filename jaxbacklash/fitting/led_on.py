@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .handed_on import WORSE, led_in, squares_of
+from .handed_on import WORSE, begun, led_in, squares_of
 from .levenberg import Levenberg, Minimum, minimise
 from .setup import at_rest
 from .shooting import Problem, Unknowns
@@ -58,7 +58,7 @@ def _first_led_in(problem: Problem, at: Minimum, first: np.ndarray) -> Unknowns:
         return at.value
     starts = led_in(problem, at, bad)
     starts[2:, bad] = at_rest(w, problem.system, starts[0], starts[1])[2:, bad]
-    return Unknowns(at.value.theta, starts, at.value.coefficients)
+    return begun(at, starts)
 
 
 def _passed_on(at: Minimum, follows: np.ndarray) -> Unknowns:
@@ -66,4 +66,4 @@ def _passed_on(at: Minimum, follows: np.ndarray) -> Unknowns:
     starts, ends = np.array(at.value.starts), np.asarray(at.stats["predicted"].end)[:-1].T
     passed = follows[1:] & np.all(np.isfinite(ends), axis=0)
     starts[2:, 1:] = np.where(passed, ends[2:], starts[2:, 1:])
-    return Unknowns(at.value.theta, starts, at.value.coefficients)
+    return begun(at, starts)
