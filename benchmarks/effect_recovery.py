@@ -5,8 +5,8 @@
 Every record has its own random rig, excitation (chirp, multisine, stepped or modulated sine), strengths, and on every
 third an encoder with counts of three noises; the simulation is non-smooth and shares nothing with the package. Each
 effect hides alone, and some in pairs and triples; some records hide nothing, some an effect outside the catalogue. A
-set counts as identifiable when every effect in it stands 6 standard errors from zero in a fit of the true model. A second
-record of the same joint under another excitation is only predicted. It needs numba.
+set counts as identifiable when every effect in it is more than 6 of the standard errors strong that a fit of the true model
+has, begun at the truth. A second record of the same joint under another excitation is only predicted. It needs numba.
 """
 
 from __future__ import annotations
@@ -20,17 +20,20 @@ from typing import Any
 
 import numpy as np
 
-from jaxbacklash.criticism.evidence import significance
+from jaxbacklash.criticism.evidence import standard_errors
 from jaxbacklash.criticism.refine import Refinement, refine
-from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.criticism.workbench import Workbench, strengths
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.mechanics import catalogue
+from jaxbacklash.parameters import specs, with_values
 from jaxbacklash.program import start
 from jaxbacklash.records import Record
 from tests.independent.generator import make_effects, make_excitation, make_rig, measure, simulate_truth
 from tests.independent.rigs import OUTSIDE_CATALOGUE, Rig
 
 RATE, SIGMA = 500.0, 3e-5  # Hz, rad
+SURE = 6.0
+JOINT = ("backlash", "stiffness", "damping")
 EXCITATIONS = ("chirp", "multisine", "stepped", "modulated")
 SINGLES = (
     "gravity", "preload", "gap_spring", "asymmetric_gap", "asymmetric_stiffness", "cubic_stiffness", "contact_damping",
@@ -86,20 +89,35 @@ def family(names: Any) -> frozenset[str]:
 
 
 def identifiable(case: Case) -> bool:
-    """Whether every hidden effect stands 6 standard errors from zero in a fit of the true model."""
+    """Whether every hidden effect is at least `SURE` of its least standard errors (Cramer-Rao) strong."""
+    return all(strength > SURE for strength in hidden_strengths(case).values())
+
+
+def hidden_strengths(case: Case) -> dict[str, float]:
+    """How strong each hidden effect is, in standard errors that a fit of the true model ends with."""
     base, free, _ = base_system(case.record, "joint", case.rig.inertia)
+    true = with_values(base, {n: getattr(case.rig, n) for n in JOINT})
     bench = Workbench(case.record, base, free, 0.2)
     laws = catalogue()
     effects = {n: laws[n](**v) for n, v in case.values.items()}
-    trial = bench.fit(effects, patience=40)
+    trial = bench.fit(effects, joint=true, patience=40)
     if trial.misfit < 1.25:
-        trial = bench.fit(bench.effects(trial), trial, tied=True, patience=40)
-    return all(significance(trial, n) > 6.0 for n in case.hidden)
+        # What free windows make of a weak effect may lead a trajectory astray, where a bound is that of another joint.
+        led = bench.fit(bench.effects(trial), trial, tied=True, patience=40)
+        trial = min(led, bench.fit(effects, joint=true, tied=True, patience=40), key=lambda way: way.cost)
+    errors = dict(zip(trial.free, standard_errors(trial)))
+    return {
+        name: max(
+            abs(case.values[name][n] - (specs(law)[n].null or 0.0)) / errors[f"{name}.{n}"]
+            for n in strengths(law) if f"{name}.{n}" in errors
+        )
+        for name, law in effects.items()
+    }  # fmt: skip
 
 
 def judge(case: Case, found: Refinement, seconds: float) -> dict[str, Any]:
     """What one record says about the method."""
-    truth = {"backlash": case.rig.backlash, "stiffness": case.rig.stiffness, "damping": case.rig.damping}
+    truth = {n: getattr(case.rig, n) for n in JOINT}
     intervals = {name: found.fit.parameters[name].ci95 for name in truth}
     inside = {name: bool(ci is not None and ci[0] <= truth[name] <= ci[1]) for name, ci in intervals.items()}
     unknown = bool(set(case.hidden) & set(OUTSIDE_CATALOGUE))
@@ -112,7 +130,7 @@ def judge(case: Case, found: Refinement, seconds: float) -> dict[str, Any]:
         "here": found.verdict.here, "median": last.score.median, "held": None if last.heldout is None else last.heldout.median,
         "rms": [s.fit.score.rms for s in found.stages], "inside": inside, "intervals": intervals, "seconds": seconds,
         "joint": {n: found.fit.parameters[n].value for n in truth}, "truth": truth,
-        "identifiable": True if right or unknown or not case.hidden else identifiable(case),
+        "identifiable": unknown or identifiable(case),
     }  # fmt: skip
 
 

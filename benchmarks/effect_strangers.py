@@ -4,7 +4,7 @@
 
 A twelfth of the records hides something outside the catalogue, a sixth nothing, the rest one effect, two or three, drawn at
 random; see `tests.independent.strangers`. The simulation is non-smooth and shares nothing with the package. As in
-`benchmarks.effect_recovery` a set is identifiable when every effect in it stands 6 standard errors from zero in a fit of the
+`benchmarks.effect_recovery` a set is identifiable when every effect in it is more than 6 standard errors strong in a fit of the
 true model, and a second record of each joint, under another excitation, is only predicted. Every answer is a JSON file in
 --work, so that a killed run goes on where it was. It needs numba.
 """
