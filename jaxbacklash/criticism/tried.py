@@ -44,6 +44,7 @@ class Tried:
         self.known: dict[tuple[frozenset[str], bool], Trial] = {}
         self.asked: set[frozenset[str]] = set()  # models that were to be tied with cuts
         self.shook: set[frozenset[str]] = set()  # models that were begun again where dry friction may hold them
+        self.passed: set[tuple[frozenset[str], frozenset[str], bool]] = set()  # models begun again from one they contain
         self.behind: set[frozenset[str]] = set()  # models not fitted on, as a simpler law is ahead on free windows
         self.apart = False  # windows are left free, and laws with states out of it
 
@@ -100,7 +101,7 @@ class Tried:
         effects = self.with_one_more(before, candidate)
         names = frozenset(effects)
         key = (names, before.tied or self.bench.grips(names))
-        if key not in self.known:
+        if key not in self.known or self.stuck_elsewhere(self.known[key], before):
             start = before
             if rival is not None and not key[1]:
                 start = self.bench.fit(effects, before, near=ROUGH)
@@ -122,6 +123,16 @@ class Tried:
                 slight = {**effects, candidate.name: effects[candidate.name].scaled(SLIGHT)}
                 self.keep(self.bench.fit(slight, before, tied=before.tied))
         return self.known[key]
+
+    def stuck_elsewhere(self, known: Trial, before: Trial) -> bool:
+        """Whether a model that contains another costs more than that, as far as it was fitted; true once for each two, since
+        beginning again there need not help."""
+        if known.tied != before.tied or not known.cost > before.cost:
+            return False
+        two = known.names, before.names, known.tied
+        new = two not in self.passed
+        self.passed.add(two)
+        return new
 
     def with_one_more(self, before: Trial, candidate: Candidate) -> dict[str, AbstractEffect]:
         """The effects of a model with one more, in place of simpler laws that it contains and whose strength it takes over."""
