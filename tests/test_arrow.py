@@ -52,3 +52,31 @@ def test_ties_do_not_hinder_windows_that_move_together(tie):
         -one, np.zeros(0), np.zeros(()), one, np.zeros(0),
     )  # fmt: skip
     np.testing.assert_allclose(solve(blocks, jnp.asarray(1.0)).local, 0.5 * one, rtol=1e-6)
+
+
+@pytest.mark.parametrize("damping", [0.0, 1e-3, 1e3])
+def test_what_moves_nothing_is_not_sent_anywhere_by_the_rounding_of_its_slope(damping):
+    """The speed from which dry friction brings a link to rest at once: no damping that is a share of its curvature holds it."""
+    blocks, matrix, slope = chain(np.random.default_rng(5))
+    size, q = blocks.slope.shape[1], blocks.corner.shape[0]
+    dead = size * 2 + 1  # the second unknown of the third window
+    matrix, slope = matrix.copy(), slope.copy()
+    matrix[dead], matrix[:, dead] = 0.0, 0.0
+    matrix[dead, dead], slope[dead] = 1e-14 * np.max(matrix), 1e-5
+    n = slope.size - q
+    part = lambda a, b: matrix[size * a : size * (a + 1), size * b : size * (b + 1)]  # noqa: E731
+    count = n // size
+    blocks = Blocks(
+        np.stack([part(w, w) for w in range(count)]),
+        np.stack([part(w + 1, w) if w + 1 < count else np.zeros((size, size)) for w in range(count)]),
+        matrix[:n, n:].reshape(count, size, q), matrix[n:, n:], slope[:n].reshape(count, size), slope[n:], np.zeros(()),
+        np.diag(matrix)[:n].reshape(count, size), np.diag(matrix)[n:],
+    )  # fmt: skip
+    found = solve(blocks, jnp.asarray(damping))
+    rest = np.delete(np.arange(n + q), dead)
+    alone = matrix[np.ix_(rest, rest)]
+    exact = np.linalg.solve(alone + damping * np.diag(np.diag(alone)), -slope[rest])
+    local = np.ravel(found.local)
+    assert abs(local[dead]) < 1e-5
+    np.testing.assert_allclose(np.delete(local, dead), exact[: n - 1], rtol=1e-8)
+    np.testing.assert_allclose(found.theta, exact[n - 1 :], rtol=1e-8)

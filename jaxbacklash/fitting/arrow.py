@@ -14,6 +14,10 @@ from .shooting import Blocks
 Array = Any
 
 
+DEAD = 1e-7
+"""Curvature along an unknown of a window below which it moves nothing, as a share of what is usual along the same in others."""
+
+
 class ArrowSolution(eqx.Module):
     """Step for the local unknowns ``local`` (W, B) and parameters ``theta`` (q,), ``schur`` (q, q) and ``pull`` (q,).
 
@@ -43,7 +47,8 @@ def solve(blocks: Blocks, damping: Array, used: Array | int | None = None) -> Ar
     size = blocks.slope.shape[1]
     q = blocks.corner.shape[0]
     eye = jnp.eye(size)
-    diagonal = blocks.diagonal + (damping * blocks.seen)[:, :, None] * eye
+    used = jnp.asarray(blocks.slope.shape[0] if used is None else used)
+    diagonal = blocks.diagonal + (damping * blocks.seen + _held(blocks, used))[:, :, None] * eye
     border = jnp.concatenate([blocks.border, blocks.slope[:, :, None]], axis=2)
 
     def eliminate(carry: Any, block: Any) -> Any:
@@ -58,7 +63,6 @@ def solve(blocks: Blocks, damping: Array, used: Array | int | None = None) -> Ar
         return carry, (factor, half_below, half_edge)
 
     start = (jnp.zeros((size, size)), jnp.zeros((size, q + 1)))
-    used = jnp.asarray(blocks.slope.shape[0] if used is None else used)
     factors, half_below, half_edge = scan_used(eliminate, start, (diagonal, blocks.below, border), used)
 
     inner = jnp.einsum("wbi,wbj->ij", half_edge, half_edge)
@@ -78,6 +82,17 @@ def solve(blocks: Blocks, damping: Array, used: Array | int | None = None) -> Ar
 
     local = scan_used(back, jnp.zeros(size), (factors, half_below, half_edge), used, reverse=True)
     return ArrowSolution(local, theta, schur, right)
+
+
+def _held(blocks: Blocks, used: Array) -> Array:
+    """Curvature (W, B) that holds an unknown that moves nothing, as the speed from which friction brings a link to rest at once.
+
+    What rounding makes of its slope would send it anywhere, at any damping, and the misfit of all windows with it.
+    """
+    own = jnp.diagonal(blocks.diagonal, axis1=1, axis2=2)
+    there = jnp.arange(own.shape[0]) < used
+    usual = jnp.nanmedian(jnp.where(there[:, None], own, jnp.nan), axis=0)
+    return jnp.where(own < DEAD * usual, usual, 0.0)
 
 
 def _solve_scaled(matrix: Array, right: Array) -> Array:
