@@ -58,27 +58,6 @@ def test_a_larger_model_that_fits_worse_begins_again_near_the_smaller_one(monkey
     assert begun == pytest.approx([20.0, 20.0 * SLIGHT][: len(costs)])
 
 
-@pytest.mark.parametrize(("known", "costs", "asked"), [(500.0, [60.0], 1), (500.0, [600.0], 1), (90.0, [], 0)])
-def test_a_richer_law_that_stuck_begins_again_once_from_the_simpler_one_that_got_further(monkeypatch, known, costs, asked):
-    """Stribeck's friction begun where there is none ended above what Coulomb's leaves, which it contains."""
-    before = Model(frozenset({"coulomb_joint"}), cost=100.0, tied=False, free=("backlash", "coulomb_joint.Tc"))
-    search, names = Search(Bench()), frozenset({"stribeck"})
-    search.bench.laws |= {n: SimpleNamespace(states=(), absorbs=(), slides=True) for n in ("coulomb_joint", "stribeck")}
-    search.keep(Model(names, cost=known, tied=False))
-    begun = []
-
-    def fit(effects, start, **__):
-        begun.append(start)
-        return Model(frozenset(effects), cost=costs.pop(0), tied=False)
-
-    monkeypatch.setattr(search.bench, "fit", fit)
-    monkeypatch.setattr(search, "with_one_more", lambda *_: {"stribeck": Stribeck(Tc=1.0, Ts=1.5)})
-    best = min([known, *costs])
-    for _ in range(2):
-        assert search.add(before, SimpleNamespace(name="stribeck", effect=Stribeck(Tc=1.0, Ts=1.5))).cost == best
-    assert begun == [before] * asked
-
-
 def test_what_promises_little_beside_one_trajectory_begins_where_that_has_arrived(monkeypatch):
     before, both = Model(frozenset({"preload"}), cost=100.0), frozenset({"preload", "gravity"})
     search, begun = Search(Bench()), []

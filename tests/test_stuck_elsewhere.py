@@ -1,0 +1,32 @@
+"""A model that was left above one it contains, on models that are only numbers."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from jaxbacklash.criticism.search import Search
+from jaxbacklash.effects import Stribeck
+
+from .number_models import Model
+from .test_search_steps import Bench
+
+
+@pytest.mark.parametrize(("known", "costs", "asked"), [(500.0, [60.0], 1), (500.0, [600.0], 1), (90.0, [], 0)])
+def test_a_richer_law_that_stuck_begins_again_once_from_the_simpler_one_that_got_further(monkeypatch, known, costs, asked):
+    """Stribeck's friction begun where there is none ended above what Coulomb's leaves, which it contains."""
+    before = Model(frozenset({"coulomb_joint"}), cost=100.0, tied=False, free=("backlash", "coulomb_joint.Tc"))
+    search, names = Search(Bench()), frozenset({"stribeck"})
+    search.bench.laws |= {n: SimpleNamespace(states=(), absorbs=(), slides=True) for n in ("coulomb_joint", "stribeck")}
+    search.keep(Model(names, cost=known, tied=False))
+    begun = []
+
+    def fit(effects, start, **__):
+        begun.append(start)
+        return Model(frozenset(effects), cost=costs.pop(0), tied=False)
+
+    monkeypatch.setattr(search.bench, "fit", fit)
+    monkeypatch.setattr(search, "with_one_more", lambda *_: {"stribeck": Stribeck(Tc=1.0, Ts=1.5)})
+    best = min([known, *costs])
+    for _ in range(2):
+        assert search.add(before, SimpleNamespace(name="stribeck", effect=Stribeck(Tc=1.0, Ts=1.5))).cost == best
+    assert begun == [before] * asked
