@@ -89,7 +89,7 @@ def family(names: Any) -> frozenset[str]:
 
 
 def identifiable(case: Case) -> bool:
-    """Whether every hidden effect is at least `SURE` of its least standard errors (Cramer-Rao) strong."""
+    """Whether every hidden effect is more than `SURE` of its least standard errors (Cramer-Rao) strong."""
     return all(strength > SURE for strength in hidden_strengths(case).values())
 
 
@@ -108,8 +108,11 @@ def hidden_strengths(case: Case) -> dict[str, float]:
     errors = dict(zip(trial.free, standard_errors(trial)))
     return {
         name: max(
-            abs(case.values[name][n] - (specs(law)[n].null or 0.0)) / errors[f"{name}.{n}"]
-            for n in strengths(law) if f"{name}.{n}" in errors
+            (
+                abs(case.values[name][n] - (specs(law)[n].null or 0.0)) / errors[f"{name}.{n}"]
+                for n in strengths(law) if f"{name}.{n}" in errors
+            ),
+            default=0.0,
         )
         for name, law in effects.items()
     }  # fmt: skip
@@ -130,7 +133,7 @@ def judge(case: Case, found: Refinement, seconds: float) -> dict[str, Any]:
         "here": found.verdict.here, "median": last.score.median, "held": None if last.heldout is None else last.heldout.median,
         "rms": [s.fit.score.rms for s in found.stages], "inside": inside, "intervals": intervals, "seconds": seconds,
         "joint": {n: found.fit.parameters[n].value for n in truth}, "truth": truth,
-        "identifiable": unknown or identifiable(case),
+        "identifiable": unknown or not case.hidden or identifiable(case),
     }  # fmt: skip
 
 
