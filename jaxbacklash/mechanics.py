@@ -11,6 +11,7 @@ or changes the play itself, or how the motion is measured. An effect overrides o
 from __future__ import annotations
 
 import dataclasses
+import math
 import re
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
@@ -77,15 +78,17 @@ class Instant:
 class AbstractEffect(eqx.Module):
     """A physical effect: a law with parameters, neutral in everything it does not override.
 
-    Class attributes: ``states`` names of internal states; ``port`` where the torque acts, ``"joint"`` (between link and
-    base, so it is part of the transmitted torque) or ``"ground"``; ``family`` a name shared by laws that data often
-    cannot tell apart; ``catalogued`` False keeps a law out of the search for missing effects; ``slides`` True for dry
-    friction, whose torque is ``dry`` against the direction of sliding at its port; ``absorbs`` names of simpler laws that this
-    one contains, so that it takes their place instead of standing beside them (parameters of one name are then the same);
-    ``yields`` parameters that the presence of another effect makes superfluous, and that effect's name: held beside it.
+    Class attributes: ``states`` names of internal states; ``reach`` how large these can become, where the law bounds what it
+    remembers; ``port`` where the torque acts, ``"joint"`` (between link and base, so it is part of the transmitted torque) or
+    ``"ground"``; ``family`` a name shared by laws that data often cannot tell apart; ``catalogued`` False keeps a law out of the
+    search for missing effects; ``slides`` True for dry friction, whose torque is ``dry`` against the direction of sliding at its
+    port; ``absorbs`` names of simpler laws that this one contains, so that it takes their place instead of standing beside them
+    (parameters of one name are then the same); ``yields`` parameters that the presence of another effect makes superfluous, and
+    that effect's name: held beside it.
     """
 
     states: ClassVar[tuple[str, ...]] = ()
+    reach: ClassVar[float] = math.inf
     port: ClassVar[str] = "joint"
     family: ClassVar[str | None] = None
     catalogued: ClassVar[bool] = True

@@ -6,6 +6,7 @@ is a flat tuple ``(y, dy, internal states of the effects in the order of their n
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -52,6 +53,12 @@ class System(eqx.Module):
         """Names of the state: y, dy and ``effect.state`` for internal states."""
         hidden = (f"{name}.{s}" for name in sorted(self.effects) for s in self.effects[name].states)
         return ("y", "dy", *hidden)
+
+    @property
+    def reach(self) -> tuple[float, ...]:
+        """How large each state can become in size, in the order of `state_names`."""
+        own = (effect for _, effect in sorted(self.effects.items()))
+        return (math.inf, math.inf, *(effect.reach for effect in own for _ in effect.states))
 
     @property
     def has_play(self) -> bool:

@@ -53,14 +53,14 @@ def test_the_stretch_lies_where_the_link_moves():
 @pytest.mark.parametrize(("off", "asked"), [(20.0, [20]), (5.0, [20, 40])])
 def test_a_sharply_tied_search_that_stays_far_off_is_given_up(monkeypatch, off, asked):
     """Loose ties, and searches that nobody gives many steps, are not cut short; what goes on begins undamped again."""
-    _, windows, problem = problem_of(record(duration=4.0))
+    _, _, problem = problem_of(record(duration=4.0))
     guess, limits, damped, near = first_guess(problem), [], [], set()
 
     def minimise(_, start, how):
         limits.append(int(how.limit))
         damped.append(float(how.damping))
         near.add(float(how.atol))
-        cost = 0.5 * off**2 * freedom(start, windows, tied=True)
+        cost = 0.5 * off**2 * freedom(problem, tied=True)
         return Minimum(start, {"cost": cost, "steps": limits[-1]})
 
     monkeypatch.setattr(module, "minimise", minimise)

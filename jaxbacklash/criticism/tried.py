@@ -262,6 +262,14 @@ class Tried:
         """Name of a model's friction that gives before it slips, None without."""
         return next((n for n in sorted(trial.names) if self.bench.laws[n].states and self.bench.laws[n].family), None)
 
+    def soaks(self, name: str) -> bool:
+        """Whether a law brings free windows states to choose, which soak up what others would explain.
+
+        What a law remembers, within a reach, is handed on from window to window even there.
+        """
+        law = self.bench.laws[name]
+        return bool(law.states) and math.isinf(law.reach)
+
     def rubs(self, trial: Trial) -> bool:
         """Whether a model has friction in the joint: what a record asks for beside it may be that friction's memory."""
         return any(rubs(self.bench.laws[name]) for name in trial.names)

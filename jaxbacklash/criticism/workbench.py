@@ -191,9 +191,7 @@ class Workbench:
         self.fits += 1
         if tied:
             problem, solution, _ = tie_windows(problem, unknowns, TIES[0], limit=patience, near=COMPARED)
-            if patience > PATIENCE and 2.0 * float(solution.stats["cost"]) > ADEQUATE**2 * freedom(
-                solution.value, self.windows, tied=True
-            ):
+            if patience > PATIENCE and 2.0 * float(solution.stats["cost"]) > ADEQUATE**2 * freedom(problem, tied=True):
                 problem, solution, _ = tie_windows(problem, unknowns, TIES[1], limit=patience, near=COMPARED)
         else:
             how = Levenberg(limit=patience, atol=near, rtol=ENOUGH)
@@ -219,7 +217,7 @@ class Workbench:
     def _run(self, problem: Problem, names: frozenset[str], free: tuple[str, ...], patience: int) -> Trial:
         """The fit of a link that friction holds: always one trajectory."""
         unknowns, seen, steps = search_held(problem, np.zeros(problem.directions.shape[1]), limit=patience)
-        count = freedom(unknowns, self.windows, tied=True)
+        count = freedom(problem, tied=True)
         if np.sqrt(2.0 * float(seen["cost"]) / count) < LOOSE:
             _, solution, taken = tie_windows(problem, unknowns, TIES[0], limit=patience, near=COMPARED)
             if float(solution.stats["cost"]) < float(seen["cost"]):
@@ -260,12 +258,12 @@ class Workbench:
         system = problem.system
         moved = np.asarray(problem.parameters(solution.value.theta))
         fitted = with_values(system, dict(zip(values(system), moved)))
-        count = freedom(solution.value, self.windows, tied=tied)
+        count = freedom(problem, tied=tied)
         rows = float(np.sum(np.asarray(self.windows.weight) > 0.0))
-        states = solution.value.starts.shape[0]
         used = float(np.sum(np.any(np.asarray(self.windows.weight) > 0.0, axis=1)))
         # What a window may begin with by itself is a parameter: an internal state where windows are free, all where one is cut.
-        starts = states * float(np.sum(self.ties - np.asarray(self.windows.tie))) if tied else (states - 2) * used
+        cuts = float(np.sum(self.ties - np.asarray(self.windows.tie)))
+        starts = sum(cuts if tied or np.isfinite(reach) else used for reach in system.reach[0 if tied else 2 :])
         penalty = len(free) * np.log(rows) + 2.0 * starts
         done = int(solution.stats["steps"]) < patience and "given_up" not in solution.stats
         return Trial(

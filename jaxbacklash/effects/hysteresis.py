@@ -42,6 +42,7 @@ class Dahl(AbstractEffect):
     Fc: Scalar = param(unit="N m", null=0.0, lower=0.0, scale=1.0)
     sigma: Scalar = param(unit="N m/rad", default=1000.0, lower=0.0, scale=1000.0)
     states: ClassVar[tuple[str, ...]] = ("s",)
+    reach: ClassVar[float] = 1.0
     family: ClassVar[str | None] = "hysteresis"
 
     @classmethod
@@ -92,6 +93,7 @@ class Lugre(AbstractEffect):
     Fs: Scalar = param(unit="N m", default=0.0, lower=0.0, scale=1.0)
     vs: Scalar = param(unit="rad/s", default=0.1, lower=1e-6, scale=0.1)
     states: ClassVar[tuple[str, ...]] = ("s",)
+    reach: ClassVar[float] = FARTHEST
     family: ClassVar[str | None] = "hysteresis"
 
     @classmethod
@@ -135,6 +137,7 @@ class BoucWen(AbstractEffect):
     n: Scalar = param(unit="1", default=1.5, lower=1.0, upper=5.0, scale=0.5)
     beta: Scalar = param(unit="1", default=0.75, lower=0.0, upper=1.0, scale=0.1)
     states: ClassVar[tuple[str, ...]] = ("s",)
+    reach: ClassVar[float] = 1.0
     family: ClassVar[str | None] = "hysteresis"
 
     @classmethod

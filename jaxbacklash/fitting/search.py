@@ -74,14 +74,14 @@ def search(
     best, steps, agreeing, tried = _from_starts(problem, first_guess(problem), max(1, starts), seed, rough, progress)
     cost = float(best.stats["cost"])
     tied = False
-    if np.sqrt(2.0 * cost / freedom(best.value, windows)) < ADEQUATE:
+    if np.sqrt(2.0 * cost / freedom(problem)) < ADEQUATE:
         progress("tying the windows into one trajectory", 0.7)
         for ties in TIES:
             joined, solution, taken = tie_windows(problem, best.value, ties)
             steps += taken
             after = float(solution.stats["cost"])
             # Tied windows may disagree where a chaotic record and a slightly wrong model part ways; then they stay apart.
-            if np.sqrt(2.0 * after / freedom(solution.value, windows, tied=True)) < ADEQUATE:
+            if np.sqrt(2.0 * after / freedom(problem, tied=True)) < ADEQUATE:
                 best, problem, cost, tied = solution, joined, after, True
                 break
     if not tied:
@@ -160,7 +160,7 @@ def _search_held(
     unknowns, seen, steps = min(tried, key=lambda entry: float(entry[1]["cost"]))
     cost = float(seen["cost"])
     w = problem.windows
-    count = freedom(unknowns, w, tied=True)
+    count = freedom(problem, tied=True)
     agreeing = sum(float(entry[1]["cost"]) - cost < 0.01 * cost for entry in tried)
     tied = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1]))
     adequate = np.sqrt(2.0 * cost / count) < LOOSE
@@ -201,23 +201,26 @@ def _tied(problem: Problem, unknowns: Unknowns, soon: int, limit: int, near: flo
     first = minimise(problem, unknowns, Levenberg(atol=near, damping=1e-9, limit=soon))
     if soon == limit or int(first.stats["steps"]) < soon:
         return first
-    if not float(first.stats["cost"]) < 0.5 * FAR_OFF**2 * freedom(first.value, problem.windows, tied=True):
+    if not float(first.stats["cost"]) < 0.5 * FAR_OFF**2 * freedom(problem, tied=True):
         return Minimum(first.value, {**first.stats, "given_up": True})
     # Where corners hold a search, beginning undamped again leads on: going on as damped as it was ends higher.
     rest = minimise(problem, first.value, Levenberg(atol=near, damping=1e-9, limit=limit - soon))
     return Minimum(rest.value, {**rest.stats, "steps": rest.stats["steps"] + soon})
 
 
-def freedom(unknowns: Unknowns, windows: Windows, *, tied: bool = False) -> float:
+def freedom(problem: Problem, *, tied: bool = False) -> float:
     """Samples less the unknowns: each window's own spline coefficients and, unless it is tied to the one before, its start.
 
-    An input as good as exact has no noise to show: neither its samples nor what its spline takes of them count.
+    What a law remembers is tied even where the motion is not. An input as good as exact has no noise to show: neither its samples
+    nor what its spline takes of them count.
     """
+    windows = problem.windows
     samples = float(np.sum(np.asarray(windows.weight) > 0.0))
     moving = float(np.sum(np.asarray(windows.input_weight) > 0.0))
     used = float(np.sum(np.any(np.asarray(windows.weight) > 0.0, axis=1)))
-    starts = used - (float(np.sum(np.asarray(windows.tie))) if tied else 0.0)
-    return samples + float(windows.told) * (moving - used * windows.intervals) - starts * unknowns.starts.shape[0]
+    first = used - float(np.sum(np.asarray(windows.tie)))
+    starts = sum(first if tied or np.isfinite(reach) else used for reach in problem.system.reach)
+    return samples + float(windows.told) * (moving - used * windows.intervals) - starts
 
 
 def inverse_information(schur: np.ndarray) -> np.ndarray:

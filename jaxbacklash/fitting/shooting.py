@@ -33,6 +33,12 @@ from .windows import Windows
 Array = Any
 
 
+KEPT = 10.0
+"""How sharply what a law remembers is tied from window to window, even where the motion is not: a tenth of its reach costs half a
+unit, and a hundredth where the motion is tied a hundred times as sharply. The record does not show it: left free it would fit
+noise, and more in a window than a joint can do; tied as sharply as the motion, in units of its noise, no step gets through."""
+
+
 class Unknowns(eqx.Module):
     """``theta`` (q,) free parameters in units of their scale; ``starts`` (n, W); ``coefficients`` (W, m)."""
 
@@ -214,9 +220,11 @@ def weighed(value: Array, weight: Array) -> Array:
 def tie_weights(problem: Problem, states: int) -> Array:
     """How sharply each window's end is tied to the next window's start, (W, n) for ``states`` = n."""
     w = problem.windows
-    # Internal states have no common scale; a loose tie is enough for what they carry from window to window.
-    drop = jnp.concatenate([w.drop, jnp.full(states - 2, w.drop[1])])
-    return problem.tie * w.tie[:, None] * drop
+    # Other internal states have no common scale; a loose tie is enough for what they carry from window to window.
+    sharp = problem.tie * jnp.concatenate([w.drop, jnp.full(states - 2, w.drop[1])])
+    reach = jnp.asarray(problem.system.reach)
+    kept = jnp.sqrt(jnp.maximum(problem.tie, 1.0)) * KEPT / reach
+    return w.tie[:, None] * jnp.where(jnp.isinf(reach), sharp, kept)
 
 
 class Shot(eqx.Module):
@@ -238,7 +246,8 @@ def shoot(problem: Problem, unknowns: Unknowns) -> Shot:
     shot = by_chunks(_shoot, (_bare(problem), unknowns.theta), _windows(problem, unknowns), problem.windows.used)
     w = problem.windows
     change = unknowns.coefficients - w.coefficients
-    return eqx.tree_at(lambda s: s.cost, shot, jnp.sum(shot.cost) + 0.5 * _whisper(w) * jnp.sum(change**2))
+    beside = 0.5 * _whisper(w) * jnp.sum(change**2) + _first_remembered(problem, unknowns.starts.T)[0]
+    return eqx.tree_at(lambda s: s.cost, shot, jnp.sum(shot.cost) + beside)
 
 
 def _shoot(shared: tuple[Problem, Array], own: Window) -> Shot:
@@ -375,9 +384,11 @@ def _ridge(problem: Problem, unknowns: Unknowns, blocks: Blocks, n: int) -> Bloc
     w = problem.windows
     level = _whisper(w)
     change = unknowns.coefficients - w.coefficients
-    slope = blocks.slope + jnp.pad(level * change, ((0, 0), (n, 0)))
+    _, pull, hold = _first_remembered(problem, unknowns.starts.T)
+    slope = blocks.slope + jnp.concatenate([pull, level * change], axis=1)
     size = blocks.diagonal.shape[1]
-    diagonal = blocks.diagonal + level * jnp.diag(jnp.where(jnp.arange(size) < n, 0.0, 1.0))
+    held = jnp.concatenate([hold, jnp.full(change.shape, level)], axis=1)
+    diagonal = blocks.diagonal + held[:, :, None] * jnp.eye(size)
     if problem.system.observed == "T":
         # Inside the play T says nothing of where the link is: a whisper of stiffness keeps the matrix regular, pulling nowhere.
         whisper = jnp.concatenate([(1e-5 * w.drop) ** 2, jnp.full(n - 2, (1e-5 * w.drop[1]) ** 2), jnp.zeros(size - n)])
@@ -389,6 +400,21 @@ def _ridge(problem: Problem, unknowns: Unknowns, blocks: Blocks, n: int) -> Bloc
     return Blocks(
         diagonal, blocks.below, blocks.border, blocks.corner, slope, blocks.slope_theta, blocks.cost, seen, blocks.seen_theta
     )
+
+
+def _first_remembered(problem: Problem, starts: Array) -> tuple[Array, Array, Array]:
+    """What holds the memory with which a window begins that goes on from none: its cost, slope (W, n) and curvature (W, n).
+
+    Nothing else does, and such a window, begun far beyond all reach, would hold up the search of all. Within its reach any is
+    nearly as likely as another, and none lies beyond.
+    """
+    w, reach = problem.windows, jnp.asarray(problem.system.reach)
+    alone = (1.0 - jnp.concatenate([jnp.zeros(1), w.tie[:-1]])) * (jnp.arange(w.count) < w.used)
+    share = starts / reach
+    beyond = share - jnp.clip(share, -1.0, 1.0)
+    cost = 0.5 * jnp.sum(alone[:, None] * (share**2 + (KEPT * beyond) ** 2))
+    curvature = jnp.where(beyond == 0.0, 1.0, 1.0 + KEPT**2)
+    return cost, alone[:, None] * (share + KEPT**2 * beyond) / reach, alone[:, None] * curvature / reach**2
 
 
 def _whisper(w: Windows) -> Array:
