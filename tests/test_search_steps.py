@@ -314,26 +314,27 @@ def test_a_richer_law_clearly_behind_a_simpler_one_that_explains_is_not_fitted_o
     assert search.ruled_out(replace(plain, tied=True), rich.names) == given_up
 
 
-def test_a_law_with_states_waits_until_it_explains_or_nothing_else_helps(monkeypatch):
+@pytest.mark.parametrize(("reach", "waits"), [(math.inf, True), (1.0, False)])
+def test_a_law_whose_states_are_free_waits_until_it_explains_or_nothing_else_helps(monkeypatch, reach, waits):
     monkeypatch.setattr("jaxbacklash.criticism.search.gain", lambda before, after: before.criterion - after.criterion)
     current = Model(frozenset(), cost=1000.0, misfit=30.0)
     static = Model(frozenset({"gravity"}), cost=500.0, misfit=17.0)
-    soaking = Model(frozenset({"dahl"}), cost=100.0, misfit=7.0)
+    soaking = Model(frozenset({"stateful"}), cost=100.0, misfit=7.0)
     search = Search(Bench())
-    search.bench.laws["dahl"] = SimpleNamespace(states=("w",), absorbs=())
+    search.bench.laws["stateful"] = SimpleNamespace(states=("w",), absorbs=(), reach=reach)
     monkeypatch.setattr("jaxbacklash.criticism.search.measures_only", lambda law: False)
-    assert search.best(current, {"dahl": soaking, "gravity": static}, 0.25) == "gravity"
+    assert search.best(current, {"stateful": soaking, "gravity": static}, 0.25) == ("gravity" if waits else "stateful")
     explains = replace(soaking, misfit=1.0)
-    assert search.best(current, {"dahl": explains, "gravity": static}, 0.25) == "dahl"
+    assert search.best(current, {"stateful": explains, "gravity": static}, 0.25) == "stateful"
     nibbling = replace(static, misfit=29.0)
-    assert search.best(current, {"dahl": soaking, "gravity": nibbling}, 0.25) == "dahl"
+    assert search.best(current, {"stateful": soaking, "gravity": nibbling}, 0.25) == "stateful"
 
 
 @pytest.mark.parametrize(("misfit", "kept"), [(40.0, False), (1.2, True)])
 def test_what_no_trajectory_follows_is_no_explanation(monkeypatch, misfit, kept):
     """Free windows begin with an internal state of their own: far from the noise that soaks up anything."""
     search = Search(Bench())
-    search.bench.laws["lugre"] = SimpleNamespace(states=("w",), absorbs=())
+    search.bench.laws["lugre"] = SimpleNamespace(states=("w",), absorbs=(), reach=math.inf)
     monkeypatch.setattr("jaxbacklash.criticism.search.measures_only", lambda law: False)
     friction = Model(frozenset({"preload"}), cost=1e5, misfit=200.0, tied=False)
     soaking = Model(frozenset({"preload", "lugre"}), cost=1e3, misfit=misfit, tied=False)

@@ -363,7 +363,7 @@ class Search(Unseen):
                 name, tried[hidden[0]] = hidden
                 steps[-1] = replace(steps[-1], evidence={**evidence, name: gain(current, tried[name])})
             settled = self.settle(tried[name])
-            if self.bench.laws[name].states and not settled.tied and (plain := self.clear(current, tried, least)):
+            if self.soaks(name) and not settled.tied and (plain := self.clear(current, tried, least)):
                 # It soaked up what free windows leave, and no trajectory follows it: what acts without a state goes first.
                 name = self.best(current, plain, least)
                 settled = self.settle(plain[name])
@@ -441,8 +441,7 @@ class Search(Unseen):
         """The simplest of the candidates that do as well as any: fewest parameters, acting before measuring only."""
         # What leaves noise goes before what does not, however little is left.
         enough = {n: t for n, t in tried.items() if explained(t)}
-        # A law with internal states has one to choose in every free window and soaks up what others would explain.
-        plain = {n: t for n, t in tried.items() if not self.bench.laws[n].states}
+        plain = {n: t for n, t in tried.items() if not self.soaks(n)}
         tried = enough or (plain if self.clear(current, tried, least) else tried)
         lowest = min(t.criterion for t in tried.values())
         # Among those the evidence decides; as long as more is missing, what will come changes it by shares of the whole.
@@ -451,8 +450,8 @@ class Search(Unseen):
         return min(level or tried, key=lambda n: (len(tried[n].free), measures_only(self.bench.laws[n]), tried[n].criterion))
 
     def clear(self, current: Trial, tried: dict[str, Trial], least: float) -> dict[str, Trial]:
-        """The candidates without internal states that clearly help."""
-        plain = {n: t for n, t in tried.items() if not self.bench.laws[n].states}
+        """The candidates that soak up nothing and clearly help."""
+        plain = {n: t for n, t in tried.items() if not self.soaks(n)}
         return {n: t for n, t in plain.items() if gain(current, t) > demanded(self.bench) and not self.nibbles(current, t, least)}
 
     def nibbles(self, before: Trial, after: Trial, least: float) -> bool:
