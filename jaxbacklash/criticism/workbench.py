@@ -261,7 +261,7 @@ class Workbench:
         count = freedom(problem, tied=tied)
         rows = float(np.sum(np.asarray(self.windows.weight) > 0.0))
         used = float(np.sum(np.any(np.asarray(self.windows.weight) > 0.0, axis=1)))
-        # What a window may begin with by itself is a parameter: an internal state where windows are free, all where one is cut.
+        # What a window begins with by itself is a parameter: where windows are free what no law remembers, all where one is cut.
         cuts = float(np.sum(self.ties - np.asarray(self.windows.tie)))
         starts = sum(cuts if tied or np.isfinite(reach) else used for reach in system.reach[0 if tied else 2 :])
         penalty = len(free) * np.log(rows) + 2.0 * starts
