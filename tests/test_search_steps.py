@@ -129,6 +129,15 @@ def test_a_model_known_well_is_not_fitted_again(monkeypatch):
     assert not search.bench.asked
 
 
+@pytest.mark.parametrize(("done", "cost"), [(False, 101.0), (True, 1e4)])
+def test_a_model_left_on_its_way_far_above_is_fitted_to_the_end(monkeypatch, done, cost):
+    significant(monkeypatch, 3.0)
+    both = Model(frozenset({"gravity", "preload"}), cost=100.0)
+    above = Model(frozenset({"gravity"}), cost=1e4, done=done)
+    search = Search(Bench(above, Model(frozenset({"gravity"}), cost=101.0)))
+    assert search.without(both, "preload").cost == cost
+
+
 def test_a_tied_fit_that_sticks_is_let_go_first():
     before = Model(frozenset(), cost=100.0)
     stuck = Model(frozenset({"gravity"}), cost=1e6, misfit=50.0, done=False)
@@ -312,22 +321,6 @@ def test_a_richer_law_clearly_behind_a_simpler_one_that_explains_is_not_fitted_o
     # Where its simpler law is kept, one trajectory of the richer one is not asked for.
     search.known = {(plain.names, False): plain, (rich.names, False): rich}
     assert search.ruled_out(replace(plain, tied=True), rich.names) == given_up
-
-
-@pytest.mark.parametrize(("reach", "waits"), [(math.inf, True), (1.0, False)])
-def test_a_law_whose_states_are_free_waits_until_it_explains_or_nothing_else_helps(monkeypatch, reach, waits):
-    monkeypatch.setattr("jaxbacklash.criticism.search.gain", lambda before, after: before.criterion - after.criterion)
-    current = Model(frozenset(), cost=1000.0, misfit=30.0)
-    static = Model(frozenset({"gravity"}), cost=500.0, misfit=17.0)
-    soaking = Model(frozenset({"stateful"}), cost=100.0, misfit=7.0)
-    search = Search(Bench())
-    search.bench.laws["stateful"] = SimpleNamespace(states=("w",), absorbs=(), reach=reach)
-    monkeypatch.setattr("jaxbacklash.criticism.search.measures_only", lambda law: False)
-    assert search.best(current, {"stateful": soaking, "gravity": static}, 0.25) == ("gravity" if waits else "stateful")
-    explains = replace(soaking, misfit=1.0)
-    assert search.best(current, {"stateful": explains, "gravity": static}, 0.25) == "stateful"
-    nibbling = replace(static, misfit=29.0)
-    assert search.best(current, {"stateful": soaking, "gravity": nibbling}, 0.25) == "stateful"
 
 
 @pytest.mark.parametrize(("misfit", "kept"), [(40.0, False), (1.2, True)])

@@ -30,6 +30,7 @@ from .evidence import (
 from .joining import one_piece
 from .loose import by_free_windows
 from .memories import Member, families, may_replace, members
+from .preference import AHEAD, advantage, lead, simplest
 from .steps import Step, leading
 from .tried import LOOSER, WHOLE, follows
 from .two_for_one import two_for_one
@@ -42,8 +43,6 @@ CLOSE, HOPEFUL = 0.9, 0.2
 """Predicted gain, as a share of the best candidate's, that earns a refit: once noise is reached, and before."""
 CLEAR = 8.0
 """An effect that stands so many standard errors from zero need not be left out to see that it is missed."""
-AHEAD = 2.0
-"""A fall of the criterion by so much tells two models that are as complex, or what a search found before from what it has now."""
 LITTLE, MUCH, MOST = 0.1, 0.25, 0.5
 """Share of the excess that an addition must take away where a rest stays unexplained: at least; as long as laws with
 internal states have not been tried; and if it is an effect of the measuring chain."""
@@ -204,7 +203,7 @@ class Search(Unseen):
         for member in self.kindred(final, name):
             self.progress(f"trying {member.name} in place of {name}", 0.7)
             settled, _ = self.prune(self.settle(self.placed(final, member, tied=final.tied, patience=WHOLE)))
-            ahead = best.criterion - settled.criterion
+            ahead = advantage(self.bench, settled, best)
             better = settled.tied > best.tied or (settled.tied == best.tied and ahead > demanded(self.bench))
             if member.name in settled.names and better:
                 best = settled
@@ -236,8 +235,8 @@ class Search(Unseen):
                 if other.criterion - final.criterion < demanded(self.bench) and adequate(other):
                     # What does as well may do so without what took the place: where it led, the rest was stuck before.
                     other, needless = self.prune(other)
-                lead = final.criterion - other.criterion
-                if new(other) and lead > self.lead(other, final, name) and adequate(other):
+                ahead = final.criterion - other.criterion
+                if new(other) and ahead > lead(self.bench, other, final, name) and adequate(other):
                     relieved = self.shaken(final)
                     if final.cost - relieved.cost > LOOSER:
                         return self.swap([*steps[:-1], self.freed(steps[-1], relieved)], seen)
@@ -250,20 +249,9 @@ class Search(Unseen):
                     path = self.reduced([*steps[:-1], step])
                     if new(path[-1].trial):
                         return self.swap(path, seen)
-                if -lead < demanded(self.bench):
+                if -ahead < demanded(self.bench):
                     level[tuple(sorted(other.names))] = other
         return steps, level
-
-    def lead(self, other: Trial, final: Trial, name: str) -> float:
-        """By how much another model must be better to replace the last one: clearly, where what is new in it is of the measuring
-        chain alone or contains the law whose place it takes. What is contained in it need only be no worse, and what acts no
-        worse than what only measures."""
-        if other.names < final.names:
-            return -demanded(self.bench)
-        new = [self.bench.laws[n] for n in other.names - final.names]
-        if measures_only(self.bench.laws[name]) and not any(measures_only(law) for law in new):
-            return -AHEAD
-        return demanded(self.bench) if all(measures_only(law) or name in law.absorbs for law in new) else AHEAD
 
     def reduced(self, steps: list[Step]) -> list[Step]:
         """The path with laws of its last model reduced to simpler ones that they contain, where those do as well."""
@@ -446,8 +434,7 @@ class Search(Unseen):
         lowest = min(t.criterion for t in tried.values())
         # Among those the evidence decides; as long as more is missing, what will come changes it by shares of the whole.
         slack = demanded(self.bench) if enough else max(1.0, (1.0 - AS_WELL) * (current.criterion - lowest))
-        level = [n for n, t in tried.items() if t.criterion - lowest < slack]
-        return min(level or tried, key=lambda n: (len(tried[n].free), measures_only(self.bench.laws[n]), tried[n].criterion))
+        return simplest(self.bench, tried, slack, doubt=AHEAD if enough else slack)
 
     def clear(self, current: Trial, tried: dict[str, Trial], least: float) -> dict[str, Trial]:
         """The candidates that soak up nothing and clearly help."""

@@ -234,7 +234,9 @@ class Tried:
         key = (names, before.tied and self.bench.grips(names) == self.bench.grips(before.names))
         if key not in self.known or self.known[key].cost - before.cost > significance(before, name) ** 2:
             effects = {n: e for n, e in self.bench.effects(before).items() if n != name}
-            self.keep(self.bench.fit(effects, before, tied=key[1]))
+            trial = self.keep(self.bench.fit(effects, before, tied=key[1]))
+            if not trial.done and trial.cost - before.cost > significance(before, name) ** 2:
+                self.finish(trial)  # it is still on its way round the bend that the effect has left
         return self.known[key]
 
     def relieved(self, before: Trial, after: Trial) -> Trial:
