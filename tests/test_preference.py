@@ -20,10 +20,18 @@ def model(*names: str, cost: float = 100.0, parameters: int = 1) -> Model:
     return Model(frozenset(names), cost=cost, free=("backlash", *(f"p{i}" for i in range(parameters))))
 
 
-@pytest.mark.parametrize(("ahead", "kept"), [(0.0, "gravity"), (0.8 * AHEAD, "gravity"), (1.2 * AHEAD, "sensor_gain")])
-def test_what_acts_goes_before_what_measures_unless_that_is_ahead(ahead, kept):
-    tried = {"gravity": model("gravity"), "sensor_gain": model("sensor_gain", cost=100.0 - 0.5 * ahead)}
-    assert simplest(BENCH, tried, demanded(BENCH)) == kept
+@pytest.mark.parametrize(
+    ("ahead", "beside", "kept"),
+    [
+        (0.0, (), "gravity"),
+        (0.8 * AHEAD, (), "gravity"),
+        (1.2 * AHEAD, (), "sensor_gain"),
+        (1.2 * AHEAD, ("coulomb_joint",), "gravity"),
+    ],
+)
+def test_what_acts_goes_before_what_measures_unless_that_is_ahead(ahead, beside, kept):
+    acts, measures = model("gravity", *beside), model("sensor_gain", *beside, cost=100.0 - 0.5 * ahead)
+    assert simplest(BENCH, {"gravity": acts, "sensor_gain": measures}, demanded(BENCH)) == kept
 
 
 def test_of_those_that_do_as_well_the_one_with_fewest_parameters():
@@ -39,6 +47,7 @@ def test_of_those_that_do_as_well_the_one_with_fewest_parameters():
     [
         (("gravity",), ("preload",), AHEAD),
         (("gravity",), ("sensor_gain",), AHEAD),
+        (("gravity", "stribeck"), ("sensor_gain", "stribeck"), demanded(BENCH)),
         (("sensor_gain",), ("gravity",), -AHEAD),
         (("coulomb_joint",), ("stribeck",), demanded(BENCH)),
         (("gravity", "preload"), ("preload",), -demanded(BENCH)),
@@ -60,8 +69,8 @@ def test_a_law_whose_states_are_free_waits_until_it_explains_or_nothing_else_hel
     current = Model(frozenset(), cost=1000.0, misfit=30.0)
     static = Model(frozenset({"gravity"}), cost=500.0, misfit=17.0)
     soaking = Model(frozenset({"stateful"}), cost=100.0, misfit=7.0)
-    search = Search(SimpleNamespace(laws={"gravity": SimpleNamespace(states=())}))
-    search.bench.laws["stateful"] = SimpleNamespace(states=("w",), absorbs=(), reach=reach)
+    search = Search(SimpleNamespace(laws={"gravity": SimpleNamespace(states=(), slides=False)}))
+    search.bench.laws["stateful"] = SimpleNamespace(states=("w",), absorbs=(), slides=False, reach=reach)
     monkeypatch.setattr("jaxbacklash.criticism.preference.measures_only", lambda law: False)
     assert search.best(current, {"stateful": soaking, "gravity": static}, 0.25) == ("gravity" if waits else "stateful")
     explains = replace(soaking, misfit=1.0)

@@ -30,3 +30,19 @@ def test_a_richer_law_that_stuck_begins_again_once_from_the_simpler_one_that_got
     for _ in range(2):
         assert search.add(before, SimpleNamespace(name="stribeck", effect=Stribeck(Tc=1.0, Ts=1.5))).cost == best
     assert begun == [before] * asked
+
+
+@pytest.mark.parametrize(
+    ("slides", "paces", "cost"),
+    [(False, [8e3, 95.0], 95.0), (False, [9.99e3, 9.98e3, 95.0], 9.99e3), (True, [8e3, 95.0], 1e4)],
+    ids=["on its way", "too slow to arrive", "at corners"],
+)
+def test_a_trajectory_on_its_way_is_gone_on_with_as_long_as_it_may_arrive(slides, paces, cost):
+    """LuGre's friction and weight were left at 6224 and at 7562 after 25 steps each, where 4797 was 60 more away."""
+    names = frozenset({"gravity"})
+    far = Model(names, cost=1e4, misfit=1.2, done=False)
+    free = Model(names, cost=80.0, tied=False)
+    on = [Model(names, cost=c, misfit=1.2, done=c < 100.0) for c in paces]
+    search = Search(Bench(far, free, far, *on))
+    search.bench.laws["gravity"].slides = slides
+    assert search.joined({"gravity": None}, Model(frozenset({"preload"}), cost=100.0)).cost == cost

@@ -434,7 +434,7 @@ class Search(Unseen):
         lowest = min(t.criterion for t in tried.values())
         # Among those the evidence decides; as long as more is missing, what will come changes it by shares of the whole.
         slack = demanded(self.bench) if enough else max(1.0, (1.0 - AS_WELL) * (current.criterion - lowest))
-        return simplest(self.bench, tried, slack, doubt=AHEAD if enough else slack)
+        return simplest(self.bench, tried, slack, more=not enough)
 
     def clear(self, current: Trial, tried: dict[str, Trial], least: float) -> dict[str, Trial]:
         """The candidates that soak up nothing and clearly help."""

@@ -162,7 +162,10 @@ class Tried:
         free = self.keep(self.bench.fit(effects, before, tied=False))
         again = self.bench.fit(self.bench.effects(free), free, tied=True, patience=patience)
         best = min(trial, again, key=lambda t: t.cost)
-        return best if better or follows(best, free) else self.softly(best)
+        if better or follows(best, free):
+            return best
+        # Friction that remembers bends the valley: many steps lead round where dry friction's corners would stop them.
+        return self.finish(self.keep(best), before.cost) if adequate(free) and not self.dry(best) else self.softly(best)
 
     def retied(self, tied: Trial) -> Trial:
         """A tied model or, where that is better, the same by way of free windows: one long trajectory has many minima."""
@@ -236,7 +239,7 @@ class Tried:
             effects = {n: e for n, e in self.bench.effects(before).items() if n != name}
             trial = self.keep(self.bench.fit(effects, before, tied=key[1]))
             if not trial.done and trial.cost - before.cost > significance(before, name) ** 2:
-                self.finish(trial)  # it is still on its way round the bend that the effect has left
+                self.finish(trial, before.cost)  # it is still on its way round the bend that the effect has left
         return self.known[key]
 
     def relieved(self, before: Trial, after: Trial) -> Trial:
@@ -357,12 +360,13 @@ class Tried:
                 return self.settle(free)
         return self.known[key]
 
-    def finish(self, trial: Trial) -> Trial:
-        """The trial fitted to the end, as long as that helps: along a curved valley it is a long way."""
-        for _ in range(ROUNDS):
+    def finish(self, trial: Trial, goal: float = math.inf) -> Trial:
+        """The trial fitted to the end, as long as that helps: along a curved valley it is a long way. Given up is what would not
+        come down to the cost that is the ``goal`` at that pace."""
+        for left in reversed(range(0 if trial.done else ROUNDS)):
             cost = trial.cost
             trial = self.keep(self.bench.fit(self.bench.effects(trial), trial, tied=trial.tied, patience=WHOLE))
-            if trial.done or not cost - trial.cost > 0.5 * demanded(self.bench):
+            if trial.done or not cost - trial.cost > 0.5 * demanded(self.bench) or trial.cost - goal > left * (cost - trial.cost):
                 break
         return trial
 
