@@ -3,6 +3,7 @@
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from scipy import optimize
 
 from jaxbacklash.fitting.arrow import solve
 from jaxbacklash.fitting.shooting import Blocks
@@ -41,6 +42,23 @@ def test_it_solves_what_dense_algebra_solves(damping):
         np.testing.assert_allclose(found.theta, exact[size:], rtol=1e-9)
         marginal = np.linalg.inv(np.linalg.inv(matrix)[size:, size:])
         np.testing.assert_allclose(found.schur, marginal, rtol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_a_bound_holds_takes_all_else_with_it(seed):
+    """Against scipy's bounded least squares: of the parameters' steps, half the room that they ask for."""
+    rng = np.random.default_rng(seed)
+    blocks, matrix, slope = chain(rng)
+    size, q = blocks.slope.size, blocks.corner.shape[0]
+    asked = np.abs(np.linalg.solve(matrix, -slope)[size:])
+    room = np.where(np.arange(q) == seed % q, 0.0, np.where(rng.random(q) < 0.5, 0.5, 2.0) * asked)
+    root = np.linalg.cholesky(matrix).T
+    bound = np.concatenate([np.full(size, np.inf), room + 1e-12])
+    exact = optimize.lsq_linear(root, np.linalg.solve(root.T, -slope), (-bound, bound), method="bvls", tol=1e-14).x
+    found = solve(blocks, jnp.asarray(0.0), between=(-room, room))
+    np.testing.assert_allclose(found.theta, exact[size:], atol=1e-8 * np.max(asked))
+    np.testing.assert_allclose(np.ravel(found.local), exact[:size], atol=1e-7 * np.max(np.abs(exact)))
+    assert float(found.promise) == pytest.approx(-(slope @ exact + 0.5 * exact @ matrix @ exact), rel=1e-6)
 
 
 @pytest.mark.parametrize("tie", [0.0, 1.0, 1e3])

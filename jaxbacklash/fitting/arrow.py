@@ -14,6 +14,8 @@ from .shooting import Blocks
 Array = Any
 
 
+ROUNDS = 3
+"""How often it is looked which parameters go beyond their bounds, once some are held there."""
 DEAD = 1e-7
 """Curvature along an unknown of a window below which it moves nothing, as a share of what is usual along the same in others."""
 
@@ -23,16 +25,20 @@ class ArrowSolution(eqx.Module):
 
     ``schur`` is the information about the parameters with all local unknowns marginalised; its inverse is their
     covariance when the blocks are those of J^T J with unit-variance residuals. ``pull`` is minus the gradient of the cost
-    with the local unknowns following: the score.
+    with the local unknowns following: the score. ``promise`` is by how much the step lowers the cost as far as its derivatives
+    tell, damping included.
     """
 
     local: Array
     theta: Array
     schur: Array
     pull: Array
+    promise: Array
 
 
-def solve(blocks: Blocks, damping: Array, used: Array | int | None = None) -> ArrowSolution:
+def solve(
+    blocks: Blocks, damping: Array, used: Array | int | None = None, between: tuple[Array, Array] | None = None
+) -> ArrowSolution:
     r"""Solve :math:`(H + \lambda D)\,\Delta = -g` by elimination of the windows in order.
 
     D is the diagonal of H as far as it comes from samples: damping measured by the ties as well would hinder windows from
@@ -43,6 +49,8 @@ def solve(blocks: Blocks, damping: Array, used: Array | int | None = None) -> Ar
     blocks : normal equations by blocks (`Blocks`)
     damping : Levenberg-Marquardt :math:`\lambda \ge 0`
     used : windows that hold data, the first ones; default all
+    between : least and largest step of each parameter, (q,) each. All else goes along with what is let go: windows that are tied
+        would be torn apart by a step that they had made for parameters that a bound then holds
     """
     size = blocks.slope.shape[1]
     q = blocks.corner.shape[0]
@@ -70,9 +78,10 @@ def solve(blocks: Blocks, damping: Array, used: Array | int | None = None) -> Ar
     right = -(blocks.slope_theta - inner[:q, q])
     if q:
         damped = schur + damping * jnp.diag(blocks.seen_theta)
-        theta = _solve_scaled(damped, right)
+        theta = _solve_scaled(damped, right) if between is None else _solve_between(damped, right, *between)
     else:
-        theta = jnp.zeros(0)
+        damped, theta = schur, jnp.zeros(0)
+    promise = 0.5 * inner[q, q] + theta @ right - 0.5 * theta @ damped @ theta
 
     def back(following: Array, stored: Any) -> Any:
         factor, below, edge = stored
@@ -81,7 +90,7 @@ def solve(blocks: Blocks, damping: Array, used: Array | int | None = None) -> Ar
         return own, own
 
     local = scan_used(back, jnp.zeros(size), (factors, half_below, half_edge), used, reverse=True)
-    return ArrowSolution(local, theta, schur, right)
+    return ArrowSolution(local, theta, schur, right, promise)
 
 
 def _held(blocks: Blocks, used: Array) -> Array:
@@ -93,6 +102,18 @@ def _held(blocks: Blocks, used: Array) -> Array:
     there = jnp.arange(own.shape[0]) < used
     usual = jnp.nanmedian(jnp.where(there[:, None], own, jnp.nan), axis=0)
     return jnp.where(own < DEAD * usual, usual, 0.0)
+
+
+def _solve_between(matrix: Array, right: Array, least: Array, largest: Array) -> Array:
+    """The solution with some unknowns held at what bounds them, found by holding those that go beyond, in a few rounds."""
+    held, theta = jnp.zeros(right.shape, bool), _solve_scaled(matrix, right)
+    for _ in range(ROUNDS):
+        within = jnp.clip(theta, least, largest)
+        held = held | (theta != within)
+        at = jnp.where(held, within, 0.0)
+        free = jnp.where(held[:, None] | held[None, :], 0.0, matrix) + jnp.diag(jnp.where(held, 1.0, 0.0))
+        theta = jnp.where(held, at, _solve_scaled(free, jnp.where(held, 0.0, right - matrix @ at)))
+    return jnp.clip(theta, least, largest)
 
 
 def _solve_scaled(matrix: Array, right: Array) -> Array:

@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 import optimistix as optx
 
-from .arrow import ArrowSolution, solve
+from .arrow import solve
 from .shooting import Blocks, Prediction, Problem, Unknowns, linearise, shoot
 
 Array = Any
@@ -81,19 +81,17 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         damping = jnp.where(state.steps == 0, self.damping, damping)
 
         # After the last look no step is taken.
-        ahead = lambda: solve(blocks, damping, args.windows.used)  # noqa: E731
+        ahead = lambda: solve(blocks, damping, args.windows.used, _room(args, y.theta))  # noqa: E731
         nowhere = jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), eqx.filter_eval_shape(ahead))
         solution = jax.lax.cond(state.steps + 1 < self.limit, ahead, lambda: nowhere)
         n = y.starts.shape[0]
         theta = jnp.clip(y.theta + solution.theta, args.lower, args.upper)
-        theta = jnp.where(args.shrink, _keep_sign(args, y.theta, theta), theta)
         trial = Unknowns(theta, y.starts + solution.local[:, :n].T, y.coefficients + solution.local[:, n:])
-        promise = _promise(blocks, solution)
         predicted = jax.tree.map(pick, shot.predicted, state.predicted)
         steps = state.steps + 1
         gained = state.mark[0] - blocks.cost > WORTH * self._least(args, blocks.cost)
         mark = jax.tree.map(lambda new, old: jnp.where(gained, new, old), (blocks.cost, steps), state.mark)
-        return y, ArrowState(blocks, predicted, trial, damping, promise, fell, steps, mark), None
+        return y, ArrowState(blocks, predicted, trial, damping, solution.promise, fell, steps, mark), None
 
     def _least(self, args: Problem, cost: Array) -> Array:
         # Where the model misfits, the noise is no measure of what matters: the misfit is.
@@ -113,24 +111,22 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
     def postprocess(
         self, fn: Any, y: Unknowns, aux: Any, args: Problem, options: Any, state: ArrowState, tags: Any, result: Any
     ) -> Any:
-        undamped = solve(state.blocks, jnp.asarray(0.0), args.windows.used)
+        undamped = solve(state.blocks, jnp.asarray(0.0), args.windows.used, _room(args, y.theta))
         stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps}
-        return y, aux, stats | {"schur": undamped.schur, "pull": undamped.pull, "promise": _promise(state.blocks, undamped)}
-
-
-def _promise(blocks: Blocks, solution: ArrowSolution) -> Array:
-    """By how much a step lowers the cost as far as its derivatives tell."""
-    return -0.5 * (jnp.sum(blocks.slope * solution.local) + jnp.sum(blocks.slope_theta * solution.theta))
+        return y, aux, stats | {"schur": undamped.schur, "pull": undamped.pull, "promise": undamped.promise}
 
 
 def _rows(problem: Problem) -> Array:
     return jnp.sum(problem.windows.weight > 0.0)
 
 
-def _keep_sign(problem: Problem, old: Array, new: Array) -> Array:
-    # Bounds on the value itself: between a third and three times the present one.
+def _room(problem: Problem, theta: Array) -> tuple[Array, Array]:
+    """Least and largest step (q,) that leads to no bound's other side; where a value must keep its sign, to no less than a third
+    and no more than three times of it."""
     scale = jnp.sum(problem.directions, axis=0)
     offset = jnp.sum(jnp.where(problem.directions != 0.0, problem.base[:, None], 0.0), axis=0)
-    value = offset + scale * old
-    wanted = offset + scale * new
-    return (jnp.clip(wanted, value / 3.0, value * 3.0) - offset) / scale
+    value = offset + scale * theta
+    near = (value / 3.0 - offset) / scale, (value * 3.0 - offset) / scale
+    least = jnp.where(problem.shrink, jnp.maximum(problem.lower, near[0]), problem.lower)
+    largest = jnp.where(problem.shrink, jnp.minimum(problem.upper, near[1]), problem.upper)
+    return least - theta, largest - theta
