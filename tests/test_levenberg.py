@@ -8,9 +8,10 @@ import pytest
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting.arrow_levenberg import ArrowLevenbergMarquardt
 from jaxbacklash.fitting.levenberg import Levenberg, minimise
-from jaxbacklash.fitting.search import TIES
-from jaxbacklash.fitting.setup import base_system, first_guess
+from jaxbacklash.fitting.search import TIES, tie_windows
+from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
 from jaxbacklash.fitting.shooting import Unknowns, residuals, shoot
+from jaxbacklash.parameters import with_values
 
 from .hidden import hidden
 
@@ -73,3 +74,23 @@ def test_where_a_jagged_cost_ends_the_search_nothing_is_left_to_gain(seed):
     errors = scale * np.sqrt(np.diag(np.linalg.inv(np.asarray(ended.stats["schur"])[:free, :free])))
     at = [int(np.flatnonzero(problem.directions[:, j])[0]) for j in range(free)]
     assert np.all(np.abs(moved[at]) < 0.3 * errors)
+
+
+def test_a_parameter_at_its_bound_does_not_tear_windows_apart_that_are_tied():
+    """What a bound holds is as good as not free: cut off alone, its share of the step left every window where none goes on."""
+    bench, _ = joint(None, 6, 6.0)
+    free = bench.fit({}, patience=60)
+    system = with_values(free.system, {"stiffness": 0.98 * free.value["stiffness"]})
+    starts, found = free.unknowns, []
+    for names in (bench.base_free, tuple(n for n in bench.base_free if n != "stiffness")):
+        problem = make_problem(system, bench.windows, names)
+        if "stiffness" in names:
+            cap = np.where(np.array(names) == "stiffness", 0.0, problem.upper)
+            problem = eqx.tree_at(lambda p: p.upper, problem, cap)
+        begin = Unknowns(np.zeros(len(names)), starts.starts, starts.coefficients)
+        problem, solution, steps = tie_windows(problem, begin, TIES[0])
+        found.append((float(solution.stats["cost"]), steps, float(problem.rebuild(solution.value.theta).damper.damping)))
+    (cost, steps, damping), (alone, few, known) = found
+    assert cost == pytest.approx(alone, rel=1e-6)
+    assert damping == pytest.approx(known, rel=1e-3)
+    assert steps <= few + 2
