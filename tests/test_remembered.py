@@ -103,7 +103,7 @@ def test_only_what_has_a_reach_is_tied_where_windows_are_free(bench):
         assert not np.any(weights[windows_in_use(bench) - 1])
         sharp = np.asarray(tie_weights(eqx.tree_at(lambda p: p.tie, problem, np.asarray(100.0)), 2 + len(kept)))
         np.testing.assert_allclose(sharp[0, :2], 100.0 * bench.windows.drop)
-        np.testing.assert_allclose(sharp[0, 2:], 100.0 * np.array(kept) if any(kept) else 100.0 * bench.windows.drop[1])
+        np.testing.assert_allclose(sharp[0, 2:], 1e4 * np.array(kept) if any(kept) else 100.0 * bench.windows.drop[1])
 
 
 def test_what_is_handed_on_is_no_freedom(bench, free):

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from jaxbacklash.criticism.search import Search
+from jaxbacklash.criticism.search import Search, Step
 from jaxbacklash.effects import Stribeck
 
 from .number_models import Model
@@ -46,3 +46,22 @@ def test_a_trajectory_on_its_way_is_gone_on_with_as_long_as_it_may_arrive(slides
     search = Search(Bench(far, free, far, *on))
     search.bench.laws["gravity"].slides = slides
     assert search.joined({"gravity": None}, Model(frozenset({"preload"}), cost=100.0)).cost == cost
+
+
+@pytest.mark.parametrize(("joins", "kept"), [(True, "coulomb_joint"), (False, "dahl")])
+def test_friction_that_gives_and_joins_nowhere_makes_way_for_dry_friction_that_does(monkeypatch, joins, kept):
+    """Coulomb's friction under much noise: Dahl's explained it apart, and no search made one trajectory of that."""
+    search = Search(Bench())
+    dry = SimpleNamespace(states=(), absorbs=(), slides=True, port="joint", family=None)
+    gives = SimpleNamespace(states=("s",), absorbs=(), slides=False, port="joint", family="hysteresis", reach=1.0)
+    search.bench.laws |= {"coulomb_joint": dry, "dahl": gives}
+    ranking = (SimpleNamespace(name="coulomb_joint", gain=50.0),)
+    base = Model(frozenset(), cost=1e3, tied=False, misfit=2.0)
+    apart = Model(frozenset({"dahl"}), cost=90.0, tied=False)
+    joined = Model(frozenset({"coulomb_joint"}), cost=99.0, tied=joins)
+    monkeypatch.setattr(search, "add", lambda before, c, rival=None: Model(frozenset({c.name}), cost=95.0, tied=False))
+    monkeypatch.setattr(search, "best", lambda before, tried, least: min(tried))
+    monkeypatch.setattr(search, "settle", lambda trial: joined)
+    monkeypatch.setattr(search, "forward", lambda start, steps, least: steps)
+    path = search.with_static([Step(base, None, (), ranking), Step(apart, "dahl", (), ())])
+    assert path[-1].trial.names == {kept}

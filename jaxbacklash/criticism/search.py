@@ -142,16 +142,21 @@ class Search(Unseen):
     def with_static(self, steps: list[Step]) -> list[Step]:
         """Another path, without a law with internal states whose free windows no trajectory follows, if it ends better.
 
-        Alone such a law may do the work of several without, the first of which then did less.
+        Alone such a law may do the work of several without, the first of which then did less. Friction that gives explains apart
+        what dry friction does, whose corners it rounds off; only that may make one trajectory of it.
         """
         final = steps[-1].trial
         free = self.known.get((final.names, False))
         remembers = [any(self.bench.laws[n].states for n in s.trial.names) for s in steps]
-        if not remembers[-1] or not final.tied or free is None or follows(final, free):
+        apart = not final.tied and explained(final) and self.gives(final) is not None and not self.apart
+        if not remembers[-1] or (not final.tied and not apart) or (final.tied and (free is None or follows(final, free))):
             return steps
         came = remembers.index(True)  # from there on one of its kin may have taken its place
         before = steps[came - 1]
         known = {n: self.known.get((before.trial.names | {n}, before.trial.tied)) for n in before.evidence}
+        if apart:
+            dry = [c for c in before.ranking if self.bench.laws[c.name].slides and self.bench.laws[c.name].port == "joint"]
+            known |= {c.name: self.add(before.trial, c) for c in dry if c.gain > 0.0}
         helpful = self.clear(before.trial, {n: t for n, t in known.items() if t is not None}, MUCH)
         if not helpful:
             return steps
@@ -159,7 +164,7 @@ class Search(Unseen):
         settled = self.settle(helpful[name])
         path = self.forward(settled, [*steps[:came], Step(settled, name, (), ())], MUCH)
         other = path[-1].trial
-        ahead = other.tied and explained(other) and gain(final, other) > demanded(self.bench)
+        ahead = other.tied and explained(other) and (apart or gain(final, other) > demanded(self.bench))
         return path if ahead else steps
 
     def with_unseen(self, steps: list[Step]) -> list[Step]:

@@ -35,8 +35,9 @@ Array = Any
 
 KEPT = 10.0
 """How sharply what a law remembers is tied from window to window, even where the motion is not: a tenth of its reach costs half a
-unit, and a thousandth where the motion is tied a hundred times as sharply. The record does not show it: left free it would fit
-noise, and more in a window than a joint can do. The noise of the motion is no measure of it."""
+unit, and a hundred-thousandth where the motion is tied a hundred times as sharply. The record does not show it: left free it
+would fit noise, and more in a window than a joint can do. Friction that never slips uses little of its reach, and a jump by
+little of that is a large one in torque."""
 
 
 class Unknowns(eqx.Module):
@@ -223,7 +224,7 @@ def tie_weights(problem: Problem, states: int) -> Array:
     # Other internal states have no common scale; a loose tie is enough for what they carry from window to window.
     sharp = problem.tie * jnp.concatenate([w.drop, jnp.full(states - 2, w.drop[1])])
     reach = jnp.asarray(problem.system.reach)
-    kept = jnp.maximum(problem.tie, 1.0) * KEPT / reach
+    kept = jnp.maximum(problem.tie, 1.0) ** 2 * KEPT / reach
     return w.tie[:, None] * jnp.where(jnp.isinf(reach), sharp, kept)
 
 
