@@ -149,7 +149,8 @@ class Search(Unseen):
         free = self.known.get((final.names, False))
         remembers = [any(self.bench.laws[n].states for n in s.trial.names) for s in steps]
         apart = not final.tied and explained(final) and self.gives(final) is not None and not self.apart
-        if not remembers[-1] or (not final.tied and not apart) or (final.tied and (free is None or follows(final, free))):
+        parted = final.tied and free is not None and not follows(final, free)
+        if not remembers[-1] or not (apart or parted):
             return steps
         came = remembers.index(True)  # from there on one of its kin may have taken its place
         before = steps[came - 1]

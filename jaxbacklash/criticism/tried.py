@@ -235,10 +235,11 @@ class Tried:
         """The model without one of its effects, fitted from the model with it unless what is known of it is near that."""
         names = before.names - {name}
         key = (names, before.tied and self.bench.grips(names) == self.bench.grips(before.names))
-        if key not in self.known or self.known[key].cost - before.cost > significance(before, name) ** 2:
+        far = before.cost + significance(before, name) ** 2
+        if key not in self.known or self.known[key].cost > far:
             effects = {n: e for n, e in self.bench.effects(before).items() if n != name}
             trial = self.keep(self.bench.fit(effects, before, tied=key[1]))
-            if not trial.done and trial.cost - before.cost > significance(before, name) ** 2:
+            if not trial.done and trial.cost > far:
                 self.finish(trial, before.cost)  # it is still on its way round the bend that the effect has left
         return self.known[key]
 
