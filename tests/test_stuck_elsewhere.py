@@ -1,5 +1,6 @@
 """A model that was left above one it contains, on models that are only numbers."""
 
+import math
 from types import SimpleNamespace
 
 import pytest
@@ -65,3 +66,23 @@ def test_friction_that_gives_and_joins_nowhere_makes_way_for_dry_friction_that_d
     monkeypatch.setattr(search, "forward", lambda start, steps, least: steps)
     path = search.with_static([Step(base, None, (), ranking), Step(apart, "dahl", (), ())])
     assert path[-1].trial.names == {kept}
+
+
+@pytest.mark.parametrize(
+    ("cost", "tied", "state", "reach", "first"),
+    [
+        (900.0, True, "s", 1.0, {"gravity"}),
+        (700.0, True, "s", 1.0, set()),
+        (900.0, True, None, 1.0, set()),
+        (700.0, False, "s", math.inf, {"gravity", "bouc_wen"}),
+    ],
+    ids=["its trajectory misses more", "its trajectory is better", "without a state", "no trajectory follows"],
+)
+def test_what_only_free_windows_gain_by_a_memory_lets_other_effects_go_first(cost, tied, state, reach, first):
+    """LuGre's friction stood in on free windows for a spring in the play and friction at the ground."""
+    search = Search(Bench())
+    for name, states in ("dahl", () if state is None else (state,)), ("bouc_wen", ("s",)):
+        search.bench.laws[name] = SimpleNamespace(states=states, absorbs=(), slides=False, reach=reach if name == "dahl" else 1.0)
+    before = Model(frozenset(), cost=800.0, tied=False, misfit=1.1)
+    help_too = {n: Model(frozenset({n}), cost=750.0, tied=False) for n in ("gravity", "bouc_wen")}
+    assert search.plain(before, Model(frozenset({"dahl"}), cost=cost, tied=tied), "dahl", help_too).keys() == first

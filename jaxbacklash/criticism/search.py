@@ -31,6 +31,7 @@ from .joining import one_piece
 from .loose import by_free_windows
 from .memories import Member, families, may_replace, members
 from .preference import AHEAD, advantage, lead, simplest
+from .recall import recalled
 from .steps import Step, leading
 from .tried import LOOSER, WHOLE, follows
 from .two_for_one import two_for_one
@@ -87,7 +88,7 @@ class Search(Unseen):
             if not explained(steps[-1].trial):
                 steps = self.forward(steps[-1].trial, steps, LITTLE)
         steps = by_free_windows(self, self.with_static(steps), MUCH)
-        steps = one_piece(self, self.with_yielding(self.with_unseen(steps)), MUCH)
+        steps = recalled(self, one_piece(self, self.with_yielding(self.with_unseen(steps)), MUCH), MUCH)
         steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(steps))))
         self.level |= self.kin_as_good(steps[-1].trial)
         return steps
@@ -357,8 +358,7 @@ class Search(Unseen):
                 name, tried[hidden[0]] = hidden
                 steps[-1] = replace(steps[-1], evidence={**evidence, name: gain(current, tried[name])})
             settled = self.settle(tried[name])
-            if self.soaks(name) and not settled.tied and (plain := self.clear(current, tried, least)):
-                # It soaked up what free windows leave, and no trajectory follows it: what acts without a state goes first.
+            if plain := self.plain(current, settled, name, self.clear(current, tried, least)):
                 name = self.best(current, plain, least)
                 settled = self.settle(plain[name])
             replaced = tuple(sorted(current.names - tried[name].names))
@@ -446,6 +446,14 @@ class Search(Unseen):
         """The candidates that soak up nothing and clearly help."""
         plain = {n: t for n, t in tried.items() if not self.soaks(n)}
         return {n: t for n, t in plain.items() if gain(current, t) > demanded(self.bench) and not self.nibbles(current, t, least)}
+
+    def plain(self, current: Trial, settled: Trial, name: str, clear: dict[str, Trial]) -> dict[str, Trial]:
+        """The candidates that help without a state, where one with a state soaks up what free windows leave: no trajectory
+        follows it, or the one that does misses more than free windows without it. What acts without a state then goes first."""
+        misled = settled.tied and not current.tied and settled.cost > current.cost and bool(self.bench.laws[name].states)
+        if misled:
+            return {n: t for n, t in clear.items() if not self.bench.laws[n].states}
+        return clear if self.soaks(name) and not settled.tied else {}
 
     def nibbles(self, before: Trial, after: Trial, least: float) -> bool:
         """Whether an addition takes away only little of a misfit of which a clear rest remains."""

@@ -86,7 +86,7 @@ class Lugre(AbstractEffect):
     therefore never fitted.
     """
 
-    sigma0: Scalar = param(unit="N m/rad", default=4000.0, lower=1.0, scale=1000.0)
+    sigma0: Scalar = param(unit="N m/rad", default=4000.0, lower=1e-6, scale=1000.0)
     sigma1: Scalar = param(unit="N m s/rad", default=1.0, lower=0.0, scale=1.0)
     sigma2: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, fixed=True, label="viscous part, as the damper")
     Fc: Scalar = param(unit="N m", null=0.0, lower=0.0, scale=1.0)
