@@ -5,8 +5,10 @@ from types import SimpleNamespace
 import pytest
 
 from jaxbacklash.criticism import yielding as module
+from jaxbacklash.criticism.search import Search
+from jaxbacklash.criticism.steps import Step
 from jaxbacklash.criticism.tried import Tried
-from jaxbacklash.criticism.yielding import sharp_as_well, yielding
+from jaxbacklash.criticism.yielding import gives_after_all, sharp_as_well, yielding
 from jaxbacklash.effects import CoulombJoint, Dahl
 
 from .number_models import Model
@@ -115,3 +117,20 @@ def test_dry_friction_and_free_windows_are_left_alone():
     loose, _, sharp = models(100.0)
     assert sharp_as_well(Tried(Bench()), sharp) is None
     assert sharp_as_well(Tried(Bench()), loose) is None
+
+
+@pytest.mark.parametrize(
+    ("cost", "misfit", "shapeless", "kept"),
+    [(80.0, 1.0, False, True), (99.9, 1.0, False, False), (80.0, 1.0, True, False), (80.0, 9.0, False, False)],
+    ids=["clearly better", "as good", "its shape is not determined", "no trajectory"],
+)
+def test_what_looked_like_growth_near_rest_may_be_friction_that_gives(monkeypatch, cost, misfit, shapeless, kept):
+    """LuGre's friction beside weight was named Coulomb's, at 9945 against 9727: Stribeck's had been given up for its shape."""
+    monkeypatch.setattr(module, "shapeless", lambda *_: shapeless)
+    dry, soft = model(100.0, coulomb_joint=CoulombJoint(3.0)), model(cost, misfit=misfit, dahl=Dahl(3.5, 2e3))
+    search = Search(Bench(dahl=[soft, soft]))
+    monkeypatch.setattr(search, "prune", lambda trial, **_: (trial, ()))
+    monkeypatch.setattr(search, "with_kin", lambda steps: steps)
+    path = gives_after_all(search, [Step(dry, "coulomb_joint", ("stribeck",), ())])
+    assert path[-1].trial.names == ({"dahl"} if kept else {"coulomb_joint"})
+    assert path[-1].dropped == (("coulomb_joint",) if kept else ("stribeck",))

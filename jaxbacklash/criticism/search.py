@@ -38,7 +38,7 @@ from .two_for_one import two_for_one
 from .under_noise import delayed
 from .unseen import GLIMPSED, MOST_EFFECTS, TRIED, Unseen
 from .workbench import Trial, Workbench, adequate
-from .yielding import sharp_as_well, yielding
+from .yielding import gives_after_all, sharp_as_well, yielding
 
 CLOSE, HOPEFUL = 0.9, 0.2
 """Predicted gain, as a share of the best candidate's, that earns a refit: once noise is reached, and before."""
@@ -273,7 +273,8 @@ class Search(Unseen):
                 acts = acts_anyway(self.bench, simpler, richer, name) or (explained(final) and not explained(simpler))
                 if gain(simpler, richer) < demanded(self.bench) or (shapeless(final, name, self.bench.slowest) and not acts):
                     settled, dropped = self.prune(self.settle(simpler))
-                    return self.reduced([*steps, Step(settled, other, (name, *dropped), ())])
+                    path = [*steps, Step(settled, other, (name, *dropped), ())]
+                    return self.reduced(path if gain(simpler, richer) < demanded(self.bench) else gives_after_all(self, path))
         if sharp := sharp_as_well(self, final):
             settled, dropped = self.prune(self.keep(sharp[1]))
             return self.reduced([*steps, Step(settled, sharp[0], (*(final.names - sharp[1].names), *dropped), ())])

@@ -7,14 +7,20 @@ so that its windows stay free and leave noise. The law that gives is then tried 
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ..mechanics import AbstractEffect, canonical_name
 from ..parameters import free_specs, with_values
 from .candidates import rubs
 from .evidence import demanded, explained, gain, shapeless
 from .memories import families, may_replace
+from .steps import Step
 from .tried import WHOLE, Tried
 from .tuning import level, stronger
 from .workbench import Trial, Workbench, adequate, strengths
+
+if TYPE_CHECKING:
+    from .search import Search
 
 FAR = 50.0
 """Times the evidence demanded that the quick look must put dry friction behind what gives to rule it out. Noise turns dry
@@ -40,6 +46,25 @@ def yielding(search: Tried, final: Trial) -> tuple[str, Trial] | None:
         if not shapeless(soft, names[0], bench.slowest):
             return names[0], soft
     return None
+
+
+def gives_after_all(search: Search, steps: list[Step]) -> list[Step]:
+    """The path with friction that gives in the place of its last model's dry friction in the joint, if that is clearly better.
+
+    For where a richer dry law explained more by a shape near rest that the record does not determine. A link that sticks tightly
+    follows the noise of the base motion, which looks like evidence; the simplest law that gives never sticks tighter than it
+    slides, so that what it gains is none of that.
+    """
+    bench, final = search.bench, steps[-1].trial
+    dry = search.dry_in_joint(final)
+    if not final.tied or dry is None or bench.outright:
+        return steps
+    for names in families(bench).values():
+        soft = _joined(search, final, dry, names[0])
+        if soft is not None and not shapeless(soft, names[0], bench.slowest) and gain(final, soft) > demanded(bench):
+            settled, dropped = search.prune(search.keep(soft), spare=names[0])
+            return search.with_kin([*steps, Step(settled, names[0], (dry, *dropped), ())])
+    return steps
 
 
 def sharp_as_well(search: Tried, final: Trial) -> tuple[str, Trial] | None:
