@@ -8,7 +8,7 @@ from jaxbacklash.criticism import yielding as module
 from jaxbacklash.criticism.search import Search
 from jaxbacklash.criticism.steps import Step
 from jaxbacklash.criticism.tried import Tried
-from jaxbacklash.criticism.yielding import gives_after_all, sharp_as_well, yielding
+from jaxbacklash.criticism.yielding import given_at_last, gives_after_all, sharp_as_well, yielding
 from jaxbacklash.effects import CoulombJoint, Dahl
 
 from .number_models import Model
@@ -134,3 +134,28 @@ def test_what_looked_like_growth_near_rest_may_be_friction_that_gives(monkeypatc
     path = gives_after_all(search, [Step(dry, "coulomb_joint", ("stribeck",), ())])
     assert path[-1].trial.names == ({"dahl"} if kept else {"coulomb_joint"})
     assert path[-1].dropped == (("coulomb_joint",) if kept else ("stribeck",))
+
+
+@pytest.mark.parametrize(("falls", "asked"), [([-40.0, 20.0, -1.0], True), ([-40.0, 1.0, -80.0], False)])
+def test_one_trajectory_of_dry_friction_is_asked_whether_it_gives(monkeypatch, falls, asked):
+    """Bouc-Wen's beside a sensor's gain: the search had tried LuGre's alone, which had stuck, and ended with Coulomb's at 9830,
+    where Dahl's comes to 9761."""
+
+    class Asked:
+        along = None
+
+        def __init__(self, bench, trial):
+            self.falls = list(falls)
+
+        def gained(self, torque):
+            return self.falls.pop(0)
+
+    monkeypatch.setattr(module, "Sounding", Asked)
+    monkeypatch.setattr(module, "own_torques", lambda laws, *_: [0.0] * max(len(laws), 3 if len(laws) > 1 else 1))
+    tried = []
+    monkeypatch.setattr(module, "gives_after_all", lambda search, steps: tried.append(1) or steps)
+    search = Search(Bench())
+    search.bench.base_free = ()
+    for trial in (model(100.0, coulomb_joint=CoulombJoint(3.0)), model(100.0, tied=False, coulomb_joint=CoulombJoint(3.0))):
+        given_at_last(search, [Step(trial, "coulomb_joint", (), ())])
+    assert tried == [1] * asked  # windows apart are not asked

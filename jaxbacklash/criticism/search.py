@@ -38,7 +38,7 @@ from .two_for_one import two_for_one
 from .under_noise import delayed
 from .unseen import GLIMPSED, MOST_EFFECTS, TRIED, Unseen
 from .workbench import Trial, Workbench, adequate
-from .yielding import gives_after_all, sharp_as_well, yielding
+from .yielding import given_at_last, gives_after_all, sharp_as_well, yielding
 
 CLOSE, HOPEFUL = 0.9, 0.2
 """Predicted gain, as a share of the best candidate's, that earns a refit: once noise is reached, and before."""
@@ -90,15 +90,17 @@ class Search(Unseen):
         steps = by_free_windows(self, self.with_static(steps), MUCH)
         steps = recalled(self, one_piece(self, self.with_yielding(self.with_unseen(steps)), MUCH), MUCH)
         steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(steps))))
+        if (giving := given_at_last(self, steps)) is not steps:
+            steps, self.level = self.swap(self.reduced(giving))
         self.level |= self.kin_as_good(steps[-1].trial)
         return steps
 
     def trim(self, steps: list[Step]) -> list[Step]:
         """The path without its last additions where they only nibble at a misfit that nothing explains.
 
-        A clear rest is a sign that something else is at work, and what takes away a small part of it stands in for that; the
-        measuring chain, which can imitate nearly anything a little, has to take away most of it. A law with internal states that
-        free windows start anew, and no trajectory can follow, soaks up what is missing, whatever that is.
+        What takes away a small part of a clear rest stands in for what else is at work; the measuring chain, which can imitate
+        nearly anything a little, has to take away most of it. A law with states that free windows start anew, and no trajectory
+        can follow, soaks up what is missing, whatever that is.
         """
         steps = list(steps)
         while len(steps) > 1 and leaves_a_rest(steps[-1].trial):
@@ -118,10 +120,7 @@ class Search(Unseen):
         return before, after
 
     def with_hidden(self, steps: list[Step]) -> list[Step]:
-        """Another path, by a law with internal states, if it explains the record and the one without does not.
-
-        A law with internal states soaks up any misfit where windows are free, so only a trajectory in one piece counts.
-        """
+        """Another path, by a law with internal states, if that explains the record in one piece and the one without does not."""
         base, final = steps[0].trial, steps[-1].trial
         tried = self.hidden(base)
         if final.names and not any(t.misfit < NOISE_FLOOR for t in tried):
@@ -143,8 +142,7 @@ class Search(Unseen):
     def with_static(self, steps: list[Step]) -> list[Step]:
         """Another path, without a law with internal states whose free windows no trajectory follows, if it ends better.
 
-        Alone such a law may do the work of several without, the first of which then did less. Friction that gives explains apart
-        what dry friction does, whose corners it rounds off; only that may make one trajectory of it.
+        It may do the work of several without, the first of which then did less; apart, what gives does that of dry friction.
         """
         final = steps[-1].trial
         free = self.known.get((final.names, False))

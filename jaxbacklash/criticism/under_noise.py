@@ -124,6 +124,11 @@ class Sounding:
         straight = abs(self._answer(FURTHER * share * torque) - further) < BENT * abs(further)
         return (fall, -slope / curvature) if straight else nothing
 
+    def gained(self, torque: np.ndarray) -> float:
+        """Fall of the sum of squares by the whole of a torque (N,) along the trajectory, in units of the noise; below zero where
+        it rises. It need be no small one: what all else makes up for is as foretold from where the trajectory is."""
+        return -2.0 * self._answer(np.interp(self.edges, self.along.t, torque))
+
     def _answer(self, torque: np.ndarray) -> float:
         problem = eqx.tree_at(lambda p: p.windows.force, self.problem, self.applied + torque)
         return answered(problem, self.unknowns)[0] - self.still

@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING
 
 from ..mechanics import AbstractEffect, canonical_name
 from ..parameters import free_specs, with_values
+from .along_motion import own_torques
 from .candidates import rubs
 from .evidence import demanded, explained, gain, shapeless
 from .memories import families, may_replace
 from .steps import Step
 from .tried import WHOLE, Tried
 from .tuning import level, stronger
+from .under_noise import Sounding
 from .workbench import Trial, Workbench, adequate, strengths
 
 if TYPE_CHECKING:
@@ -64,6 +66,27 @@ def gives_after_all(search: Search, steps: list[Step]) -> list[Step]:
         if soft is not None and not shapeless(soft, names[0], bench.slowest) and gain(final, soft) > demanded(bench):
             settled, dropped = search.prune(search.keep(soft), spare=names[0])
             return search.with_kin([*steps, Step(settled, names[0], (dry, *dropped), ())])
+    return steps
+
+
+def given_at_last(search: Search, steps: list[Step]) -> list[Step]:
+    """The path with friction that gives in the place of its last model's dry friction, if one trajectory asks for that.
+
+    It is asked with the difference of their torques along it. Free windows hardly tell how friction turns, and a search that has
+    stuck on the way from them with one law that gives has said nothing of another.
+    """
+    bench, final = search.bench, steps[-1].trial
+    dry = search.dry_in_joint(final)
+    if not final.tied or dry is None or bench.outright or bench.quick.blind or not explained(final):
+        return steps
+    search.progress(f"looking for friction that gives in place of {dry}", 0.7)
+    sounding, present = Sounding(bench, final), final.system.effects[dry]
+    own = own_torques([present], final.system, sounding.along)[0]
+    for names in families(bench).values():
+        laws = [stronger(g, level(present)) for g in bench.laws[names[0]].guesses(final.system, bench.quick.motion)]
+        torques = own_torques(laws, final.system, sounding.along)
+        if max(sounding.gained(torque - own) for torque in torques) > demanded(bench):
+            return gives_after_all(search, steps)
     return steps
 
 
