@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from jaxbacklash.criticism import unseen as module
+from jaxbacklash.criticism.candidates import Candidate
 from jaxbacklash.criticism.search import Search
 from jaxbacklash.criticism.unseen import Unseen
 from jaxbacklash.effects import Contact, CoulombGround, CoulombJoint, Dahl, Damper, Gravity, Stribeck
@@ -94,7 +95,7 @@ def test_a_richer_relative_is_tried_where_the_quick_look_could_not_tell(monkeypa
     added = []
     monkeypatch.setattr(search, "may_help", lambda *_: False)
     monkeypatch.setattr(search, "given", lambda *_: {})
-    monkeypatch.setattr(module, "reshaped", lambda *_: SimpleNamespace(gain=0.0))
+    monkeypatch.setattr(module, "reshaped", lambda *_: Candidate("stribeck", Stribeck(), 0.0, 1.0, {}))
     monkeypatch.setattr(search, "add", lambda before, c: added.append(c.name) or model(90.0, stribeck=Stribeck(3.0, 4.0, 0.1)))
     ranking = [SimpleNamespace(name=n, gain=0.0, predicted=1.0) for n in ("gravity", "stribeck")]
     assert list(search.attempts(trial, ranking)) == (["stribeck"] if tried else [])

@@ -65,7 +65,8 @@ def test_it_takes_the_shape_that_the_trajectory_asks_for(beside_coulomb, monkeyp
 @pytest.mark.parametrize(
     ("untold", "gain", "second", "tries", "kept"),
     [
-        (False, 60.0, 940.0, 0, None),  # the quick look could tell, and put others first
+        (False, 10.0, 940.0, 0, None),  # the quick look could tell, and put others first
+        (False, 60.0, 940.0, 0, 990.0),  # the trajectory promises it clearly, whatever the quick look says
         (True, 60.0, 940.0, 1, 940.0),
         (True, 60.0, 995.0, 1, 990.0),  # from there it has stuck: what came of the quick look's shape stays
         (True, 10.0, 940.0, 0, 990.0),  # it promises no more than has come already
@@ -74,6 +75,7 @@ def test_it_takes_the_shape_that_the_trajectory_asks_for(beside_coulomb, monkeyp
 def test_it_is_tried_beside_the_quick_looks_where_that_cannot_tell(monkeypatch, untold, gain, second, tries, kept):
     names, fitted = frozenset({"stribeck"}), []
     bench = SimpleNamespace(laws={"stribeck": jb.effects.Stribeck, "coulomb_joint": jb.CoulombJoint})
+    bench.record = SimpleNamespace(samples=5000)
     bench.effects = lambda trial: {"coulomb_joint": jb.CoulombJoint(3.0)}
     bench.fit = lambda effects, *_, **__: fitted.append(effects) or Model(names, cost=second)
     search = Unseen(bench)

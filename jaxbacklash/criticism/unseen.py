@@ -169,20 +169,24 @@ class Unseen(Tried):
     def richer(self, current: Trial, others: list[Candidate]) -> dict[str, Trial]:
         """Models with a law in place of a simpler one that it contains, by name.
 
-        Beside a law that sticks its richer relative is judged badly from outside: it is tried unless the quick look could tell.
+        Beside a law that sticks its richer relative is judged badly from outside: it is tried unless the quick look could tell,
+        and even then if the trajectory promises it, at the shape that the trajectory asks for.
         """
         found: dict[str, Trial] = {}
         for c in others:
             simpler = sorted(current.names.intersection(self.bench.laws[c.name].absorbs))
             if not simpler:
                 continue
-            untold = explained(current) and current.tied and self.untold(current, simpler[0], c.name)
-            if explained(current) and not untold:
+            quiet = explained(current)
+            other = reshaped(self.bench, current, c.name) if quiet and current.tied else None
+            untold = other is not None and self.untold(current, simpler[0], c.name)
+            if quiet and not untold:
+                if other is not None and self.promised(current, other) > 1.0:
+                    found[c.name] = self.add(current, other)
                 continue
             found[c.name] = self.add(current, c)
             # Nor does the quick look then know its shape, and from a wrong one a search may not come back.
-            other = reshaped(self.bench, current, c.name) if untold and found[c.name].tied else None
-            if other is not None and other.gain > 2.0 * (current.cost - found[c.name].cost):
+            if other is not None and found[c.name].tied and other.gain > 2.0 * (current.cost - found[c.name].cost):
                 found[c.name] = self.keep(self.bench.fit(self.with_one_more(current, other), current, tied=True))
         return found
 
