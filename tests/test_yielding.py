@@ -1,5 +1,6 @@
 """Friction that gives in the place of dry friction that no trajectory follows, on models that are only numbers."""
 
+import math
 from types import SimpleNamespace
 
 import pytest
@@ -136,7 +137,7 @@ def test_what_looked_like_growth_near_rest_may_be_friction_that_gives(monkeypatc
     assert path[-1].dropped == (("coulomb_joint",) if kept else ("stribeck",))
 
 
-@pytest.mark.parametrize(("falls", "asked"), [([-40.0, 20.0, -1.0], True), ([-40.0, 1.0, -80.0], False)])
+@pytest.mark.parametrize(("falls", "asked"), [([math.nan, 20.0, -1.0], True), ([-40.0, 1.0, -80.0], False)])
 def test_one_trajectory_of_dry_friction_is_asked_whether_it_gives(monkeypatch, falls, asked):
     """Bouc-Wen's beside a sensor's gain: the search had tried LuGre's alone, which had stuck, and ended with Coulomb's at 9830,
     where Dahl's comes to 9761."""
