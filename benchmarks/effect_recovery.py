@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +23,7 @@ import numpy as np
 
 from jaxbacklash.criticism.evidence import standard_errors
 from jaxbacklash.criticism.refine import Refinement, refine
-from jaxbacklash.criticism.workbench import Workbench, strengths
+from jaxbacklash.criticism.workbench import Trial, Workbench, strengths
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import specs, with_values
@@ -88,13 +89,8 @@ def family(names: Any) -> frozenset[str]:
     return frozenset(HYSTERESIS.get(n, n) for n in names)
 
 
-def identifiable(case: Case) -> bool:
-    """Whether every hidden effect is more than `SURE` of its least standard errors (Cramer-Rao) strong."""
-    return all(strength > SURE for strength in hidden_strengths(case).values())
-
-
-def hidden_strengths(case: Case) -> dict[str, float]:
-    """How strong each hidden effect is, in standard errors that a fit of the true model ends with."""
+def true_model(case: Case) -> Trial:
+    """The true model fitted, begun at the truth: its best trajectory found, or free windows where it has none."""
     base, free, _ = base_system(case.record, "joint", case.rig.inertia)
     true = with_values(base, {n: getattr(case.rig, n) for n in JOINT})
     bench = Workbench(case.record, base, free, 0.2)
@@ -105,17 +101,31 @@ def hidden_strengths(case: Case) -> dict[str, float]:
         # What free windows make of a weak effect may lead a trajectory astray, where a bound is that of another joint.
         led = bench.fit(bench.effects(trial), trial, tied=True, patience=40)
         trial = min(led, bench.fit(effects, joint=true, tied=True, patience=40), key=lambda way: way.cost)
+    return trial
+
+
+def hidden_strengths(case: Case, trial: Trial) -> dict[str, float]:
+    """How strong each hidden effect is, in standard errors that the true model ``trial`` ends with (Cramer-Rao)."""
     errors = dict(zip(trial.free, standard_errors(trial)))
+    laws = catalogue()
     return {
         name: max(
             (
-                abs(case.values[name][n] - (specs(law)[n].null or 0.0)) / errors[f"{name}.{n}"]
-                for n in strengths(law) if f"{name}.{n}" in errors
+                abs(case.values[name][n] - (specs(laws[name])[n].null or 0.0)) / errors[f"{name}.{n}"]
+                for n in strengths(laws[name]) if f"{name}.{n}" in errors
             ),
             default=0.0,
         )
-        for name, law in effects.items()
+        for name in case.values
     }  # fmt: skip
+
+
+def missed(case: Case, found: Refinement, trial: Trial) -> float | None:
+    """By how much the criterion (twice the cost, ln N a parameter) of the true model, begun at the truth, is below that of the
+    model found: where it is not, no search that goes by the evidence names the truth. None where only one is a trajectory."""
+    if trial.tied != found.fit.tied:
+        return None
+    return 2.0 * (found.fit.cost - trial.cost) + math.log(case.record.samples) * (len(found.fit.free) - len(trial.free))
 
 
 def judge(case: Case, found: Refinement, seconds: float) -> dict[str, Any]:
@@ -127,13 +137,16 @@ def judge(case: Case, found: Refinement, seconds: float) -> dict[str, Any]:
     exact = family(found.effects) == family(case.hidden)
     right = not found.verdict.complete if unknown else exact
     last = found.fit
+    known = not unknown and case.hidden
+    trial = true_model(case) if known else None
+    sure = trial is None or all(strength > SURE for strength in hidden_strengths(case, trial).values())
     return {
         "number": case.number, "hidden": list(case.hidden), "kind": case.kind, "found": list(found.effects),
         "alternatives": [list(a) for a in found.alternatives], "verdict": found.verdict.word, "right": right,
         "here": found.verdict.here, "median": last.score.median, "held": None if last.heldout is None else last.heldout.median,
         "rms": [s.fit.score.rms for s in found.stages], "inside": inside, "intervals": intervals, "seconds": seconds,
         "joint": {n: found.fit.parameters[n].value for n in truth}, "truth": truth,
-        "identifiable": unknown or not case.hidden or identifiable(case),
+        "identifiable": sure, "missed": None if trial is None or exact else missed(case, found, trial),
     }  # fmt: skip
 
 
@@ -160,7 +173,8 @@ def table(rows: list[dict[str, Any]]) -> str:
         names = "+".join(r["hidden"]) or "nothing", "+".join(r["found"]) or "nothing"
         lines.append(
             f"  {r['number']:3d} {r['kind']:10s} {names[0]} -> {names[1]} ({r['verdict']}; alternatives {r['alternatives']}; "
-            f"identifiable {r['identifiable']}; rms {r['rms'][0]:.2f} -> {r['rms'][-1]:.2f})"
+            f"identifiable {r['identifiable']}; rms {r['rms'][0]:.2f} -> {r['rms'][-1]:.2f}"
+            + (")" if r["missed"] is None else f"; the true model begun at the truth is {r['missed']:+.1f} ahead)")
         )
     return "\n".join(lines)
 

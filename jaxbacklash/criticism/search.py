@@ -32,6 +32,7 @@ from .loose import by_free_windows
 from .memories import Member, families, may_replace, members
 from .preference import AHEAD, advantage, lead, simplest
 from .recall import recalled
+from .reshaping import reshaped_at_last
 from .steps import Step, leading
 from .tried import LOOSER, WHOLE, follows
 from .two_for_one import two_for_one
@@ -90,8 +91,9 @@ class Search(Unseen):
         steps = by_free_windows(self, self.with_static(steps), MUCH)
         steps = recalled(self, one_piece(self, self.with_yielding(self.with_unseen(steps)), MUCH), MUCH)
         steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(steps))))
-        if (giving := given_at_last(self, steps)) is not steps:
-            steps, self.level = self.swap(self.reduced(giving))
+        for asked in (given_at_last, reshaped_at_last):
+            if (other := asked(self, steps)) is not steps:
+                steps, self.level = self.swap(self.reduced(other))
         self.level |= self.kin_as_good(steps[-1].trial)
         return steps
 
