@@ -13,9 +13,9 @@ import equinox as eqx
 import numpy as np
 
 from ..compiled import kept_jit
-from .handed_on import follows
+from .handed_on import follows, handed_on
 from .led_on import led_on
-from .levenberg import Levenberg, minimise
+from .levenberg import Levenberg, Minimum, minimise
 from .shooting import Problem, Unknowns, residuals
 from .windows import Layout
 
@@ -25,6 +25,8 @@ CLEARLY = 1e-3
 """The same, as a share of what the misfit exceeds the noise by."""
 STEPS, REMEMBERED = 20, 60
 """Steps allowed to a score; and to that of a law that remembers, which creeps where noise hides what is remembered."""
+ROUNDS, ON = 6, 0.01
+"""How often a search of the starts goes on, and the share of half the sum of squares that it must promise, and gain, for that."""
 kept_residuals = kept_jit(residuals)
 
 
@@ -84,11 +86,27 @@ def score(
     near = NEAR * max(1, int(problem.windows.used))
     # An error of a model that is clearly wrong is quoted to three digits: its starts need not creep on for a fourth.
     how = Levenberg(atol=near, rtol=CLEARLY, damping=1e-6, limit=STEPS if begin.starts.shape[0] == 2 else REMEMBERED)
-    solution = minimise(still, led_on(still, begin, follows(problem)), how)
-    found = solution.value
-    predicted = solution.stats["predicted"]
+    solution = _settled(still, led_on(still, begin, follows(problem)), how)
+    found, predicted = solution.value, solution.stats["predicted"]
     scores = tuple(_summarise(still, found, predicted, layout, group, i) for i in range(len(layout.first)))
     return scores, Unknowns(unknowns.theta, found.starts, found.coefficients)
+
+
+def _settled(still: Problem, begin: Unknowns, how: Levenberg) -> Minimum:
+    """The starts searched for, again from where the search has ended as long as that clearly helps.
+
+    All windows share one step size: a few that creep round a corner, or have stuck at one, keep all others where they are.
+    """
+    found = minimise(still, begin, how)
+    for _ in range(ROUNDS):
+        cost = float(found.stats["cost"])
+        if not float(found.stats["promise"]) > ON * cost:
+            break
+        again, _ = handed_on(still, found, how)
+        found = again if again is not found else minimise(still, found.value, how)
+        if not cost - float(found.stats["cost"]) > ON * cost:
+            break
+    return found
 
 
 def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout, group: int, record: int) -> Score:
