@@ -8,6 +8,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from ..fitting.search import ADEQUATE, silent
+from .arriving import arrived
 from .candidates import Candidate, may_join, rank
 from .evidence import (
     AS_WELL,
@@ -91,7 +92,7 @@ class Search(Unseen):
         steps = by_free_windows(self, self.with_static(steps), MUCH)
         steps = recalled(self, one_piece(self, self.with_yielding(self.with_unseen(steps)), MUCH), MUCH)
         steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(steps))))
-        for asked in (given_at_last, reshaped_at_last):
+        for asked in (arrived, given_at_last, reshaped_at_last, arrived):
             if (other := asked(self, steps)) is not steps:
                 steps, self.level = self.swap(self.reduced(other))
         self.level |= self.kin_as_good(steps[-1].trial)
@@ -100,9 +101,8 @@ class Search(Unseen):
     def trim(self, steps: list[Step]) -> list[Step]:
         """The path without its last additions where they only nibble at a misfit that nothing explains.
 
-        What takes away a small part of a clear rest stands in for what else is at work; the measuring chain, which can imitate
-        nearly anything a little, has to take away most of it. A law with states that free windows start anew, and no trajectory
-        can follow, soaks up what is missing, whatever that is.
+        What takes away little of a clear rest stands in for what else is at work; the measuring chain, which can imitate nearly
+        anything a little, has to take away most. A law with states that no trajectory follows soaks up whatever is missing.
         """
         steps = list(steps)
         while len(steps) > 1 and leaves_a_rest(steps[-1].trial):

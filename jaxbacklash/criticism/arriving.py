@@ -1,0 +1,28 @@
+"""The last model's search, gone on with where it has ended before it arrived.
+
+Along the curved valley of a law that remembers a search may run out of patience within the noise, where nothing calls for more.
+The model is right then and its numbers are not: they stand further from the best than their intervals say.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from .steps import Step
+from .tried import LOOSER
+
+if TYPE_CHECKING:
+    from .search import Search
+
+
+def arrived(search: Search, steps: list[Step]) -> list[Step]:
+    """The path with its last model where its search arrives, from its own windows or from its parameters and the data."""
+    final = steps[-1].trial
+    if not final.tied or final.done or search.bench.outright:
+        return steps
+    ways = (search.finish(final), search.begun_again(final))
+    found = search.keep(min(ways, key=lambda way: way.cost))
+    if not final.cost - found.cost > LOOSER:
+        return steps
+    return [*steps[:-1], replace(steps[-1], trial=found)]
