@@ -119,6 +119,11 @@ def level(law: AbstractEffect) -> float:
     return max((abs(found[n]) for n, s in specs(law).items() if s.unit == "N m"), default=0.0)
 
 
+def at_level(guesses: Iterable[AbstractEffect], size: float) -> list[AbstractEffect]:
+    """The guesses of a law with ``size`` [N m] as their largest torque, without those that state none."""
+    return [stronger(guess, size / level(guess)) for guess in guesses if level(guess) > 0.0]
+
+
 def _round(
     look: QuickLook, system: System, free: tuple[str, ...], effect: AbstractEffect
 ) -> tuple[AbstractEffect, System, np.ndarray]:

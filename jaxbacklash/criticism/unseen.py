@@ -14,7 +14,7 @@ from .candidates import Candidate, reshaped
 from .evidence import demanded, explained, measures_only
 from .memories import Member, families, members, without
 from .tried import LOOSER, WHOLE, Tried
-from .tuning import Rival, Tuned, apart, level, stronger, told
+from .tuning import Rival, Tuned, apart, at_level, level, told
 from .under_noise import as_if_right, blurred, changes, own_rest, promises
 from .workbench import Trial, Workbench, adequate, strengths
 
@@ -196,8 +196,7 @@ class Unseen(Tried):
         if not (size := level(friction)) > 0.0 or quick.blind:
             return []
         _, system, free = without(self.bench, trial, dry)
-        guesses = [law for law in self.bench.laws[name].guesses(system, quick.motion) if level(law) > 0.0]
-        laws = [stronger(law, size / level(law)) for law in guesses]
+        laws = at_level(self.bench.laws[name].guesses(system, quick.motion), size)
         least = demanded(self.bench) + np.log(self.bench.record.samples)
         return laws if laws and told(quick, free, laws[0], system, friction) <= GLIMPSED * least else []
 

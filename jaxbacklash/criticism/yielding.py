@@ -17,7 +17,7 @@ from .evidence import demanded, explained, gain, shapeless
 from .memories import families, may_replace
 from .steps import Step
 from .tried import WHOLE, Tried
-from .tuning import level, stronger
+from .tuning import at_level, level, stronger
 from .under_noise import Sounding
 from .workbench import Trial, Workbench, adequate, strengths
 
@@ -83,7 +83,7 @@ def given_at_last(search: Search, steps: list[Step]) -> list[Step]:
     sounding, present = Sounding(bench, final), final.system.effects[dry]
     own = own_torques([present], final.system, sounding.along)[0]
     for names in families(bench).values():
-        laws = [stronger(g, level(present)) for g in bench.laws[names[0]].guesses(final.system, bench.quick.motion)]
+        laws = at_level(bench.laws[names[0]].guesses(final.system, bench.quick.motion), level(present))
         torques = own_torques(laws, final.system, sounding.along)
         # Any: one guess whose answer is no number says nothing of the others.
         if any(sounding.gained(torque - own) > demanded(bench) for torque in torques):
@@ -125,11 +125,9 @@ def _joined(search: Tried, final: Trial, dry: str, name: str) -> Trial | None:
     """One trajectory with the law that gives, from the first of its guesses that leads to one."""
     bench = search.bench
     beside = _beside(bench, final, dry)
-    size = level(final.system.effects[dry])
-    for guess in bench.laws[name].guesses(final.system, bench.quick.motion):
+    for guess in at_level(bench.laws[name].guesses(final.system, bench.quick.motion), level(final.system.effects[dry])):
         search.progress(f"trying {name} in place of {dry}", 0.65)
-        effects = {**beside, name: stronger(guess, size)}
-        free = bench.fit(effects, final, followed=True, patience=WHOLE)
+        free = bench.fit({**beside, name: guess}, final, followed=True, patience=WHOLE)
         if not adequate(free):
             continue
         tried = bench.fit(bench.effects(free), free, tied=True, patience=WHOLE)
