@@ -150,8 +150,22 @@ def judge(case: Case, found: Refinement, seconds: float) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def confusion(rows: list[dict[str, Any]]) -> list[str]:
+    """For every effect how often it hid and was named, how often something else was named for it, and how often it was named
+    where it was not; friction with memory is one."""
+    pairs = [(family(r["hidden"]), family(r["found"])) for r in rows if not set(r["hidden"]) & set(OUTSIDE_CATALOGUE)]
+    lines = [f"{'effect':22s} hidden named  false  named in its place"]
+    for name in sorted(frozenset().union(*(hidden | found for hidden, found in pairs))):
+        hid = [(hidden, found) for hidden, found in pairs if name in hidden]
+        missed = [found - hidden for hidden, found in hid if name not in found]
+        false = sum(name in found for hidden, found in pairs if name not in hidden)
+        instead = ", ".join("+".join(sorted(names)) or "nothing" for names in missed)
+        lines.append(f"{name:22s} {len(hid):6d} {len(hid) - len(missed):5d} {false:6d}  {instead}".rstrip())
+    return lines
+
+
 def table(rows: list[dict[str, Any]]) -> str:
-    """The confusion in words."""
+    """The confusion in words and numbers."""
     named = [r for r in rows if r["hidden"] and not set(r["hidden"]) & set(OUTSIDE_CATALOGUE)]
     clean = [r for r in rows if not r["hidden"]]
     unknown = [r for r in rows if set(r["hidden"]) & set(OUTSIDE_CATALOGUE)]
@@ -176,7 +190,7 @@ def table(rows: list[dict[str, Any]]) -> str:
             f"identifiable {r['identifiable']}; rms {r['rms'][0]:.2f} -> {r['rms'][-1]:.2f}"
             + (")" if r["missed"] is None else f"; the true model begun at the truth is {r['missed']:+.1f} ahead)")
         )
-    return "\n".join(lines)
+    return "\n".join([*lines, *confusion(rows)])
 
 
 def main() -> None:
