@@ -39,7 +39,9 @@ def test_only_what_is_in_the_model_or_judged_is_asked(bench):
     assert isinstance(waking(problem)(jnp.zeros(problem.directions.shape[1])), Awake)
 
 
-@pytest.mark.parametrize("names", [("coulomb_joint",), ("coulomb_ground", "gravity"), ("lugre", "torque_ripple")])
+@pytest.mark.parametrize(
+    "names", [("coulomb_joint",), ("coulomb_ground", "gravity"), pytest.param(("lugre", "torque_ripple"), marks=pytest.mark.slow)]
+)
 def test_derivatives_are_those_of_all_laws(bench, monkeypatch, names):
     effects = {name: bench.laws[name].guesses(bench.base)[0] for name in names}
     problem, _ = bench.problem(effects, bench.base, extra=["preload.T0", "cubic_stiffness.k3"])

@@ -57,6 +57,7 @@ def test_only_dry_friction_is_a_reason_to_cut(monkeypatch):
     assert tried.Tried(Rubbing(stuck, stuck)).settle(free) is stuck
 
 
+@pytest.mark.slow
 def test_a_cut_is_paid_for():
     """Where nothing is wrong a cut lowers the cost as a position and a speed more do by chance, and is charged for them."""
     record, rig, _, _ = hidden(None, "chirp", 5)

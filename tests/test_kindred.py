@@ -25,7 +25,7 @@ def as_dahl(record, rig, law):
     return bench, bench.fit(bench.effects(alone), alone, tied=True, patience=60)
 
 
-@pytest.mark.parametrize(("law", "seed"), [(Dahl, 1), (Dahl, 2), (BoucWen, 2)])
+@pytest.mark.parametrize(("law", "seed"), [pytest.param(Dahl, 1, marks=pytest.mark.slow), (Dahl, 2), (BoucWen, 2)])
 def test_a_relative_is_promised_where_it_is_the_truth(law, seed):
     name = {Dahl: "dahl", BoucWen: "bouc_wen"}[law]
     record, rig, values, _ = hidden(name, "multisine", seed)

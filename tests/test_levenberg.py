@@ -76,6 +76,7 @@ def test_where_a_jagged_cost_ends_the_search_nothing_is_left_to_gain(seed):
     assert np.all(np.abs(moved[at]) < 0.3 * errors)
 
 
+@pytest.mark.slow
 def test_a_parameter_at_its_bound_does_not_tear_windows_apart_that_are_tied():
     """What a bound holds is as good as not free: cut off alone, its share of the step left every window where none goes on."""
     bench, _ = joint(None, 6, 6.0)

@@ -33,7 +33,7 @@ def record(effects, seed=3, sigma=3e-5):
     return Record(seen["t"], {"x": seen["x"], "z": seen["z"]})
 
 
-@pytest.mark.parametrize("name", HIDDEN)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] if " and " in n else []) for n in HIDDEN])
 def test_names_what_is_hidden(name):
     told = []
     found = jb.refine(record(HIDDEN[name]), inertia=RIG.inertia, settled=told.append)

@@ -101,6 +101,7 @@ def test_what_cannot_be_read_through_stays_where_it_was():
     assert np.array_equal(read_through(bench.windows, plain, blind), plain)
 
 
+@pytest.mark.slow
 def test_a_motion_that_runs_away_where_nobody_measured_costs_nothing():
     """Behind the end of a record the base rests at once; a spring that hardens may throw its link out of all numbers there."""
     own = record(seconds=6.11)
