@@ -209,8 +209,7 @@ class _Judge:
         assert self.heldout is not None
         bench = self.bench
         windows, layout, group = prepare(bench.pace, [self.heldout], bench.window, intervals=bench.windows.intervals)
-        if self.bench.noise_factor != 1.0:
-            factor = self.bench.noise_factor
-            windows = eqx.tree_at(lambda w: (w.weight, w.drop), windows, (windows.weight / factor, windows.drop / factor))
+        if (factor := bench.quieter_elsewhere(layout.noise[0])) != 1.0:
+            windows = windows.noisier(factor)
         other = eqx.tree_at(lambda p: p.windows, problem, windows)
         return score(other, first_guess(other), layout, group=group, through=bool(bench.outright))[0][0]

@@ -241,6 +241,13 @@ class Workbench:
         self.windows = self.windows.noisier(factor)
         self.layout = replace(self.layout, noise=tuple(factor * n for n in self.layout.noise))
 
+    def quieter_elsewhere(self, noise: float) -> float:
+        """By which factor the ``noise`` estimated from another record of the same joint is to be taken.
+
+        What made this record's estimate too large need not have been there: it is not taken for less than this record's noise.
+        """
+        return float(np.clip(self.layout.noise[0] / max(noise, 1e-300), min(self.noise_factor, 1.0), 1.0))
+
     def cut(self, ties: np.ndarray) -> None:
         """Tie only those windows from now on that have a one in ``ties`` (W,); ``self.ties`` keeps what was tied before."""
         self.windows = eqx.tree_at(lambda w: w.tie, self.windows, ties)

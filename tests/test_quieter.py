@@ -1,0 +1,43 @@
+"""Noise that a model shows to be smaller than estimated, and what that says of another record of the same joint."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from jaxbacklash.criticism.refine import _Judge
+from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.fitting.setup import base_system
+from tests.hidden import hidden
+
+
+@pytest.mark.parametrize(
+    ("factor", "here", "there", "taken"),
+    [
+        (0.72, 1.0, 1.39, 0.72),  # too large by as much in both
+        (0.72, 1.0, 1.0, 1.0),  # right from the beginning
+        (0.72, 1.0, 0.9, 1.0),  # quieter than this one by itself
+        (0.72, 1.0, 3.0, 0.72),  # noisier, but no further from its estimate than was seen here
+        (0.72, 1.0, 1.2, 1.0 / 1.2),
+        (1.0, 1.0, 1.4, 1.0),  # nothing was found to be too large
+    ],
+)
+def test_another_records_noise_is_taken_for_less_only_as_far_as_this_ones(factor, here, there, taken):
+    bench = SimpleNamespace(noise_factor=factor, layout=SimpleNamespace(noise=(here,)))
+    assert Workbench.quieter_elsewhere(bench, there) == pytest.approx(taken, rel=0.01)
+
+
+def test_a_held_out_record_whose_noise_was_right_is_predicted_to_it():
+    record, rig, _, _ = hidden(None, "multisine", 7, seconds=8.0)
+    heldout, other, _, _ = hidden(None, "chirp", 7, seconds=8.0)
+    assert rig == other
+    base, free, _ = base_system(record, "joint", rig.inertia)
+    bench = Workbench(record, base, free, 0.2, beside=heldout)
+    bench.quieter(1.25)  # as if corners had been taken for noise
+    bench.noise_factor = 1.0
+    trial = bench.fit({}, tied=True, patience=60)
+    assert trial.misfit < 0.97  # so that a search would take it back
+    bench.quieter(0.8)
+    fit = _Judge(bench, heldout, "joint", False, False, None, lambda fit: None)(trial)
+    assert fit.score.median == pytest.approx(1.0, abs=0.05)
+    assert fit.heldout is not None
+    assert fit.heldout.median == pytest.approx(1.0, abs=0.05)
