@@ -10,7 +10,7 @@ from jaxbacklash.criticism.search import Search
 from jaxbacklash.criticism.steps import Step
 from jaxbacklash.criticism.tried import Tried
 from jaxbacklash.criticism.yielding import given_at_last, gives_after_all, sharp_as_well, yielding
-from jaxbacklash.effects import CoulombJoint, Dahl
+from jaxbacklash.effects import CoulombJoint, Dahl, Lugre
 
 from .number_models import Model
 
@@ -78,6 +78,20 @@ def test_friction_that_gives_takes_the_place_of_what_no_trajectory_follows(monke
     assert trial is soft
     assert [(float(law.Fc), float(law.sigma)) for law in bench.begun[:2]] == [(3.0, 3e3), (3.0, 3e4)]
     assert float(bench.begun[2].Tc) == pytest.approx(3.5)
+
+
+def test_another_of_the_family_is_tried_where_the_first_follows_nothing(monkeypatch):
+    """It holds twice as much as it slides with: no trajectory of Dahl's friction followed, and it was named Coulomb's."""
+    monkeypatch.setattr(module, "shapeless", lambda *_: False)
+    guess, right = ({"sigma0": 3e3, "sigma1": 5.0, "Fc": level, "Fs": 1.5 * level, "vs": 0.12} for level in (1.0, 5.5))
+    monkeypatch.setattr(Lugre, "guesses", classmethod(lambda cls, system, motion=None: [cls(**guess)]))
+    loose, _, stuck = models(1e5, misfit=9.0)
+    lost, soft = model(1e5, misfit=9.0, dahl=Dahl(3.0, 3e3)), model(100.0, lugre=Lugre(**right))
+    bench = Bench(dahl=[lost, lost], lugre=[soft], coulomb_joint=[stuck])
+    bench.laws["lugre"] = Lugre
+    assert yielding(Tried(bench), loose) == ("lugre", soft)
+    (begun,) = [law for law in bench.begun if isinstance(law, Lugre)]
+    assert (float(begun.Fs), float(begun.Fc)) == (3.0, 2.0)  # at the level of the dry friction
 
 
 @pytest.mark.parametrize(("lost", "name"), [(0.1, "coulomb_joint"), (200.0, "dahl")])

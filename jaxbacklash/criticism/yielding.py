@@ -39,14 +39,15 @@ def yielding(search: Tried, final: Trial) -> tuple[str, Trial] | None:
     dry = search.dry_in_joint(final)
     if final.tied or dry is None or not adequate(final) or bench.outright:
         return None
-    for names in families(bench).values():
-        if (soft := _joined(search, final, dry, names[0])) is None:
+    # One of a family may be no way to another: Dahl's friction does not follow a link that LuGre's holds at rest and lets slide.
+    for name in (name for names in families(bench).values() for name in names):
+        if (soft := _joined(search, final, dry, name)) is None:
             continue
-        sharp = _sharp(search, soft, names[0], final.system.effects[dry])
+        sharp = _sharp(search, soft, name, final.system.effects[dry])
         if sharp.tied and explained(sharp) and gain(sharp, soft) < demanded(bench):
             return dry, sharp
-        if not shapeless(soft, names[0], bench.slowest):
-            return names[0], soft
+        if not shapeless(soft, name, bench.slowest):
+            return name, soft
     return None
 
 
