@@ -25,6 +25,7 @@ from jaxbacklash.criticism.evidence import standard_errors
 from jaxbacklash.criticism.refine import Refinement, refine
 from jaxbacklash.criticism.workbench import Trial, Workbench, strengths
 from jaxbacklash.fitting.setup import base_system
+from jaxbacklash.fitting.windows import observed_noise
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import specs, with_values
 from jaxbacklash.program import start
@@ -122,8 +123,9 @@ def hidden_strengths(case: Case, trial: Trial) -> dict[str, float]:
 
 def missed(case: Case, found: Refinement, trial: Trial) -> float | None:
     """By how much the criterion (twice the cost, ln N a parameter) of the true model, begun at the truth, is below that of the
-    model found: where it is not, no search that goes by the evidence names the truth. None where only one is a trajectory."""
-    if trial.tied != found.fit.tied:
+    model found: where it is not, no search that goes by the evidence names the truth. None where only one is a trajectory, or the
+    search has taken the noise for less, in units of which all this is."""
+    if trial.tied != found.fit.tied or not math.isclose(found.fit.noise[0], observed_noise(case.record)):
         return None
     return 2.0 * (found.fit.cost - trial.cost) + math.log(case.record.samples) * (len(found.fit.free) - len(trial.free))
 
@@ -137,8 +139,7 @@ def judge(case: Case, found: Refinement, seconds: float) -> dict[str, Any]:
     exact = family(found.effects) == family(case.hidden)
     right = not found.verdict.complete if unknown else exact
     last = found.fit
-    known = not unknown and case.hidden
-    trial = true_model(case) if known else None
+    trial = true_model(case) if case.hidden and not unknown else None
     sure = trial is None or all(strength > SURE for strength in hidden_strengths(case, trial).values())
     return {
         "number": case.number, "hidden": list(case.hidden), "kind": case.kind, "found": list(found.effects),

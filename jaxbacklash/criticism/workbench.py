@@ -246,7 +246,7 @@ class Workbench:
 
         What made this record's estimate too large need not have been there: it is not taken for less than this record's noise.
         """
-        return float(np.clip(self.layout.noise[0] / max(noise, 1e-300), min(self.noise_factor, 1.0), 1.0))
+        return float(np.clip(self.layout.noise[0] / max(noise, 1e-300), self.noise_factor, 1.0))
 
     def cut(self, ties: np.ndarray) -> None:
         """Tie only those windows from now on that have a one in ``ties`` (W,); ``self.ties`` keeps what was tied before."""
