@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import os
 import pickle
@@ -69,4 +70,9 @@ def devices_of(call: Compiled) -> list[int]:
 @functools.cache
 def _find_lapack() -> None:
     """Have JAX look up LAPACK's routines, as it does when it lowers a call of them: a program out of a file has none to lower."""
+    with contextlib.suppress(Exception):  # a JAX that has renamed this lowers a call, which takes ten times as long
+        from jaxlib import lapack
+
+        lapack.prepare_lapack_call("potrf_ffi", np.dtype(np.float64))
+        return
     jax.jit(jax.lax.linalg.cholesky).lower(jax.ShapeDtypeStruct((1, 1), np.float64))

@@ -127,9 +127,7 @@ class System(eqx.Module):
 
     def observe(self, value: Scalar) -> Scalar:
         """What the measuring chain makes of the channel that it measures."""
-        for name in sorted(self.effects):
-            value = self.effects[name].observe(value)
-        return value
+        return observe(self.effects, value)
 
     def lag(self) -> Scalar | None:
         """Delay of the measured channel behind the input [s], None when nothing in the system delays it."""
@@ -201,3 +199,10 @@ class System(eqx.Module):
             own.append((name, state[at : at + count]))
             at += count
         return own
+
+
+def observe(effects: dict[str, AbstractEffect], value: Scalar) -> Scalar:
+    """What effects by name, those of the measuring chain, make of the channel that is measured."""
+    for name in sorted(effects):
+        value = effects[name].observe(value)
+    return value

@@ -114,7 +114,7 @@ def _score(
     )
     problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1] if trial.tied else 0.0))
     schur, pull, cost, scales = bench.look(problem, trial.unknowns)
-    q = len(trial.free)
+    q, present = len(trial.free), trial.value
     found = []
     for name in group:
         held = contained(bench, trial, bench.laws[name]) if instead else {}
@@ -131,7 +131,7 @@ def _score(
             gain = 0.0
         left = max(2.0 * cost - gain, 0.0)
         predicted = trial.misfit * np.sqrt(left / max(2.0 * cost, 1e-300))
-        joint = {n: trial.value[n] + float(size) for n, size in zip((trial.free[i] for i in kept), step)}
+        joint = {n: present[n] + float(size) for n, size in zip((trial.free[i] for i in kept), step)}
         found.append(Candidate(name, with_values(shapes[name], moved), gain, float(predicted), joint))
     return found
 

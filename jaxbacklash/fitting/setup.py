@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 
+from ..compiled import kept_jit
 from ..effects import Contact, Damper, Spring
 from ..errors import BadInput
 from ..mechanics import AbstractEffect, Drive, catalogue
 from ..parameters import ravel, specs, values, with_values
 from ..records import Record
-from ..system import System
+from ..system import System, observe
 from .equation_error import Start, estimate
 from .held import held, march, place
 from .loop import read_loop
@@ -228,8 +230,15 @@ def read_through(w: Windows, starts: np.ndarray, system: System, before: System 
 
 def _chain(system: System, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """What the measuring chain shows of places (W,), and how it grows with them."""
-    shown, slope = jax.jvp(system.observe, (jnp.asarray(place),), (jnp.ones(place.shape),))
+    # Without all that does not take part, one program serves every system.
+    chain = {name: e for name, e in system.effects.items() if type(e).observe is not AbstractEffect.observe}
+    shown, slope = _through(chain, np.asarray(place))
     return np.asarray(shown), np.asarray(slope)
+
+
+@kept_jit
+def _through(chain: dict[str, AbstractEffect], place: np.ndarray) -> Any:
+    return jax.jvp(lambda value: observe(chain, value), (place,), (jnp.ones_like(place),))
 
 
 def _relative(w: Windows, y: np.ndarray, dy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
