@@ -21,6 +21,9 @@ NEAR_NOISE, SIGMAS, CHANCE = 1.01, 3.0, 2.0
 """Root of the reduced chi-square up to which what is left counts as noise, since the noise itself is estimated; how many standard
 deviations of that root may come on top for a verdict (in 80 records of right models it did not exceed 1.013); and how many as
 long as there is more to add, when a small misfit that something else makes is still to be told from chance."""
+LITTLE, MUCH, MOST = 0.1, 0.25, 0.5
+"""Share of the excess that an addition must take away where a rest stays unexplained: at least; as long as laws with
+internal states have not been tried; and if it is an effect of the measuring chain."""
 
 
 def demanded(bench: Workbench) -> float:

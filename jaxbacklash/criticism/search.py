@@ -12,6 +12,9 @@ from .arriving import arrived
 from .candidates import Candidate, may_join, rank
 from .evidence import (
     AS_WELL,
+    LITTLE,
+    MOST,
+    MUCH,
     NOISE_FLOOR,
     SURE,
     acts_anyway,
@@ -39,6 +42,7 @@ from .tried import LOOSER, WHOLE, follows
 from .two_for_one import two_for_one
 from .under_noise import delayed
 from .unseen import GLIMPSED, MOST_EFFECTS, TRIED, Unseen
+from .within_bounds import within_bounds
 from .workbench import Trial, Workbench, adequate
 from .yielding import given_at_last, gives_after_all, sharp_as_well, yielding
 
@@ -46,9 +50,6 @@ CLOSE, HOPEFUL = 0.9, 0.2
 """Predicted gain, as a share of the best candidate's, that earns a refit: once noise is reached, and before."""
 CLEAR = 8.0
 """An effect that stands so many standard errors from zero need not be left out to see that it is missed."""
-LITTLE, MUCH, MOST = 0.1, 0.25, 0.5
-"""Share of the excess that an addition must take away where a rest stays unexplained: at least; as long as laws with
-internal states have not been tried; and if it is an effect of the measuring chain."""
 
 
 class Search(Unseen):
@@ -92,7 +93,7 @@ class Search(Unseen):
         steps = by_free_windows(self, self.with_static(steps), MUCH)
         steps = recalled(self, one_piece(self, self.with_yielding(self.with_unseen(steps)), MUCH), MUCH)
         steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(steps))))
-        for asked in (arrived, given_at_last, reshaped_at_last, arrived):
+        for asked in (within_bounds, arrived, given_at_last, reshaped_at_last, arrived):
             if (other := asked(self, steps)) is not steps:
                 steps, self.level = self.swap(self.reduced(other))
         self.level |= self.kin_as_good(steps[-1].trial)
@@ -183,10 +184,6 @@ class Search(Unseen):
         settled, dropped = self.prune(self.settle(trial), spare=name)
         seen = replace(steps[-1], evidence={**steps[-1].evidence, name: evidence})
         return self.forward(settled, [*steps[:-1], seen, Step(settled, name, dropped, ())], MUCH)
-
-    def runs_through(self, trial: Trial) -> bool:
-        """Whether a model of a link that is not seen was judged by one run through the record, as it has to stay."""
-        return bool(self.bench.outright) and (self.bench.grips(trial.names) or not adequate(trial))
 
     def with_yielding(self, steps: list[Step]) -> list[Step]:
         """The path with friction in the joint that gives, where only that makes one trajectory of the record."""

@@ -334,6 +334,10 @@ class Tried:
         simpler = [tried[n] for n in self.bench.laws[name].absorbs if n in tried]
         return any(explained(t) and t.tied == own.tied and gain(own, t) > demanded(self.bench) for t in simpler)
 
+    def runs_through(self, trial: Trial) -> bool:
+        """Whether a model of a link that is not seen was judged by one run through the record, as it has to stay."""
+        return bool(self.bench.outright) and (self.bench.grips(trial.names) or not adequate(trial))
+
     def ruled_out(self, final: Trial, names: frozenset[str]) -> bool:
         """Whether a model fell behind another on free windows already: tying them gives it nothing that it lacks there."""
         own, other = self.known.get((final.names, False)), self.known.get((names, False))
