@@ -1,6 +1,7 @@
 """The last model's search arrives, or is gone on with."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 
@@ -10,12 +11,19 @@ from jaxbacklash.criticism.search import Search, Step
 from .number_models import Model
 from .test_search_steps import Bench
 
+
+def _bench():
+    bench = Bench()
+    bench.laws |= {"lugre": SimpleNamespace(slides=False), "dry": SimpleNamespace(slides=True)}
+    return bench
+
+
 FINAL = Model(frozenset({"lugre"}), cost=4253.0, done=False)
 
 
 def last(monkeypatch, final, finished, anew):
     """The path's last model, and how many searches that took."""
-    search, searches = Search(Bench()), []
+    search, searches = Search(_bench()), []
     search.keep(final)
     monkeypatch.setattr(search, "finish", lambda trial: searches.append(1) or replace(final, cost=finished))
     monkeypatch.setattr(search, "begun_again", lambda trial: searches.append(1) or replace(final, cost=anew, done=True))
@@ -41,3 +49,41 @@ def test_a_search_that_has_not_arrived_goes_on_by_the_better_of_two_ways(monkeyp
 @pytest.mark.parametrize("final", [replace(FINAL, done=True), replace(FINAL, tied=False)], ids=["arrived", "windows apart"])
 def test_what_has_arrived_or_is_no_trajectory_stays(monkeypatch, final):
     assert last(monkeypatch, final, 1.0, 1.0) == (4253.0, 0)
+
+
+def test_a_search_that_goes_on_in_vain_is_not_asked_again(monkeypatch):
+    search, asked = Search(_bench()), []
+    monkeypatch.setattr(search, "finish", lambda trial: asked.append(trial) or trial)
+    monkeypatch.setattr(search, "begun_again", lambda trial: trial)
+    steps = [Step(FINAL, "lugre", (), ())]
+    assert arrived(search, arrived(search, steps)) is steps
+    assert asked == [FINAL]
+    other = [Step(replace(FINAL, cost=4200.0), "lugre", (), ())]
+    assert arrived(search, other) is other
+    assert len(asked) == 2
+
+
+def test_dry_friction_is_not_begun_anew(monkeypatch):
+    """From its parameters and the data one trajectory with dry friction ran away, and took a hundred steps for that."""
+    search, final = Search(_bench()), Model(frozenset({"dry"}), cost=13961.0, done=False)
+    monkeypatch.setattr(search, "finish", lambda trial: replace(trial, cost=13892.0))
+    monkeypatch.setattr(search, "begun_again", lambda trial: pytest.fail("begun anew"))
+    assert arrived(search, [Step(final, "dry", (), ())])[-1].trial.cost == 13892.0
+
+
+@pytest.mark.parametrize(("again", "cost"), [(13892.0, 13892.0), (14000.0, 13961.0)])
+def test_a_trajectory_that_has_stuck_at_a_corner_is_tied_anew_from_windows_that_have_arrived(monkeypatch, again, cost):
+    """Coulomb's friction in the joint, 30 s at 500 Hz: tied from windows that had two steps more to go it stuck 68 above."""
+    search, fits = Search(_bench()), []
+    free = Model(frozenset({"dry"}), cost=13619.0, tied=False, done=False)
+    ended = [replace(free, cost=13961.0, tied=True), replace(free, cost=again, tied=True, done=True)]
+    search.bench.effects = lambda trial: {}
+    search.bench.fit = lambda effects, start, **how: fits.append(start) or ended[len(fits) - 1]
+    monkeypatch.setattr(search, "finish", lambda trial: replace(trial, cost=13618.0, done=True))
+    assert search.settle(free).cost == cost
+    assert [f.cost for f in fits] == [13619.0, 13618.0]
+    search.known.clear()
+    fits.clear()
+    ended[0] = replace(ended[0], done=True)
+    assert search.settle(free).cost == 13961.0
+    assert len(fits) == 1

@@ -17,11 +17,17 @@ if TYPE_CHECKING:
 
 
 def arrived(search: Search, steps: list[Step]) -> list[Step]:
-    """The path with its last model where its search arrives, from its own windows or from its parameters and the data."""
+    """The path with its last model where its search arrives, from its own windows or from its parameters and the data.
+
+    Begun anew, one trajectory with dry friction only runs away. A model is asked once.
+    """
     final = steps[-1].trial
-    if not final.tied or final.done or search.bench.outright:
+    if not final.tied or final.done or search.bench.outright or final is search.gone_on:
         return steps
-    ways = (search.finish(final), search.begun_again(final))
+    search.gone_on = final
+    ways = [search.finish(final)]
+    if not search.dry(final):
+        ways.append(search.begun_again(final))
     found = search.keep(min(ways, key=lambda way: way.cost))
     if not final.cost - found.cost > LOOSER:
         return steps

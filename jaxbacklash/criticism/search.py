@@ -65,6 +65,7 @@ class Search(Unseen):
         super().__init__(bench, progress, seen)
         self.likely = likely  # told a model that leaves but noise
         self.level: dict[tuple[str, ...], Trial] = {}
+        self.gone_on: Trial | None = None  # the last model whose search was gone on with
 
     def base(self) -> Trial:
         """The joint alone."""

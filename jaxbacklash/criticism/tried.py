@@ -57,7 +57,7 @@ class Tried:
         if not trial.tied and adequate(trial):
             tied = self.bench.fit(self.bench.effects(trial), trial, tied=True, patience=WHOLE)
             if follows(tied, trial):
-                return self.keep(tied)
+                return self.keep(tied if tied.done or trial.done or not self.dry(tied) else self.tied_anew(tied, trial))
             if (through := self.let_go(trial)) is not None:
                 return through
             if adequate(tied) and not tied.done and not self.dry(tied):
@@ -66,6 +66,12 @@ class Tried:
             if adequate(tied) and (tied.done or not self.dry(tied)):
                 return self.keep(tied)
         return trial if trial.done else self.finish(trial)
+
+    def tied_anew(self, tied: Trial, free: Trial) -> Trial:
+        """A tied model whose search has stuck at a corner of dry friction or, where that is better, the same from free windows
+        that have arrived."""
+        free = self.finish(free)
+        return min(tied, self.bench.fit(self.bench.effects(free), free, tied=True, patience=WHOLE), key=lambda t: t.cost)
 
     def let_go(self, free: Trial) -> Trial | None:
         """The same model tied by way of cuts where dry friction does not let the search through, if that helps.
