@@ -14,6 +14,7 @@ from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.fitting.shooting import Prediction, Unknowns
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import values as values_of
+from jaxbacklash.sensors import SensorOffset
 
 WINDOWS, SAMPLES = 40, 10
 
@@ -32,7 +33,7 @@ def problem():
     tie[20] = 0.0  # another record begins with window 21
     zero = np.zeros((WINDOWS, SAMPLES))
     windows = SimpleNamespace(measured=zero, weight=zero + 1.0, tie=tie, panel=0.01, every=1)
-    return SimpleNamespace(windows=windows, system=SimpleNamespace(observed="y", observe=lambda value: value))
+    return SimpleNamespace(windows=windows, system=SimpleNamespace(observed="y", effects={}))
 
 
 def missing(*far):
@@ -82,7 +83,7 @@ def test_the_start_of_a_link_that_is_not_seen_is_not_read_off_its_samples(proble
 @pytest.mark.parametrize("offset", [0.0, 0.5])
 def test_the_first_of_a_record_begins_where_its_samples_lead(problem, monkeypatch, offset):
     """It is thrown, and knocked back half way: only curves through its first half know how it was thrown."""
-    problem.system.observe = lambda value: value + offset
+    problem.system.effects = {"sensor_offset": SensorOffset(offset)}
     t = 0.01 * np.arange(SAMPLES)
     knocked = np.minimum(t, 0.09 - t)
     problem.windows.measured = np.tile(offset + 3.0 + 2.0 * knocked + 1e-4 * (-1.0) ** np.arange(SAMPLES), (WINDOWS, 1))

@@ -27,6 +27,8 @@ UNLIKE_A_LOOP = 0.5
 """Share of a transmitted force that its loop may leave unexplained."""
 PERIOD = 20.0
 """Samples in a period of the contact's resonance at the start, where a record of transmitted force has to tell the inertia."""
+ROUNDING = 1e-9
+"""What a place that is read back may be off by, as a share of what is seen."""
 NEWTON = 3
 """Steps to where a measuring chain shows what it should: scales and shifts need one, a law of the user's own may need more."""
 
@@ -219,11 +221,15 @@ def read_through(w: Windows, starts: np.ndarray, system: System, before: System 
     seen, slope = (z, np.ones_like(z)) if before is None else _chain(before, z)
     place = z
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # a chain may show nothing of a motion
+        shown, own = _chain(system, place)
+        first = float(np.max(np.abs(seen - shown)))
         for _ in range(NEWTON):
-            shown, own = _chain(system, place)
             place = place + (seen - shown) / own
-        speed = dz * slope / _chain(system, place)[1]
-    if not np.all(np.isfinite([place, speed])):
+            shown, own = _chain(system, place)
+        speed = dz * slope / own
+        # Where rounding alone keeps the slope from zero, it leads anywhere.
+        astray = np.max(np.abs(seen - shown)) > max(first, ROUNDING * float(np.max(np.abs(seen))))
+    if astray or not np.all(np.isfinite([place, speed])):
         return starts
     return np.concatenate([[y - z + place, dy - dz + speed], starts[2:]])
 
