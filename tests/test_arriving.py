@@ -73,7 +73,7 @@ def test_dry_friction_is_not_begun_anew(monkeypatch):
 
 @pytest.mark.parametrize(("again", "cost"), [(13892.0, 13892.0), (14000.0, 13961.0)])
 def test_a_trajectory_that_has_stuck_at_a_corner_is_tied_anew_from_windows_that_have_arrived(monkeypatch, again, cost):
-    """Coulomb's friction in the joint, 30 s at 500 Hz: tied from windows that had two steps more to go it stuck 68 above."""
+    """Coulomb's friction in the joint, 30 s at 500 Hz: tied from windows that had a dozen steps more to go it stuck 68 above."""
     search, fits = Search(_bench()), []
     free = Model(frozenset({"dry"}), cost=13619.0, tied=False, done=False)
     ended = [replace(free, cost=13961.0, tied=True), replace(free, cost=again, tied=True, done=True)]
