@@ -95,3 +95,39 @@ def test_every_effect_has_a_chance_to_be_another(monkeypatch):
     found = list(loose._around(search, both))
     assert found[0] is both
     assert added == ["gap_spring", "drag", "ripple"] * 2
+
+
+DRAG = frozenset({"gravity"})  # the model that one trajectory does not follow well: what laws with a state seem to add to it
+
+
+@pytest.mark.parametrize(
+    ("trajectory", "along", "soaks"),
+    [
+        (Model(DRAG | {"lugre"}, cost=6e6), 6100.0, True),
+        (Model(DRAG | {"lugre"}, cost=6300.0), 6100.0, False),  # its trajectory misses less than that of the model without
+        (None, 6100.0, False),  # nobody knows
+        (Model(DRAG | {"lugre"}, cost=6e6), 6350.0, False),  # the trajectory gains less than free windows do
+    ],
+    ids=["no trajectory", "a trajectory", "none looked for", "more apart"],
+)
+def test_free_windows_that_only_a_memory_helps_are_not_followed(trajectory, along, soaks):
+    """Drag beside Stribeck's friction: with Coulomb's, LuGre's took 50 off free windows, and its trajectory ran away; Stribeck's
+    took 500 off the trajectory."""
+    search = Search(Bench())
+    search.bench.laws |= {n: SimpleNamespace(states=states) for n, states in {"lugre": ("u",), "stribeck": ()}.items()}
+    if trajectory is not None:
+        search.keep(trajectory)
+    current, apart = Model(DRAG, cost=6354.0), Model(DRAG, cost=5409.0, tied=False)
+    others = {"lugre": Model(DRAG | {"lugre"}, cost=5384.0, tied=False)}
+    tried = {"stribeck": Model(DRAG | {"stribeck"}, cost=along)}
+    assert loose.soaked_up(search, current, tried, apart, others) is soaks
+
+
+def test_what_free_windows_are_helped_by_without_a_memory_is_followed():
+    search = Search(Bench())
+    search.bench.laws |= {"lugre": SimpleNamespace(states=("u",))}
+    search.keep(Model(DRAG | {"lugre"}, cost=6e6))
+    apart, tried = Model(DRAG, cost=5409.0, tied=False), {"preload": Model(DRAG | {"preload"}, cost=6100.0)}
+    others = {n: Model(DRAG | {n}, cost=5384.0, tied=False) for n in ("lugre", "preload")}
+    assert not loose.soaked_up(search, Model(DRAG, cost=6354.0), tried, apart, others)
+    assert not loose.soaked_up(search, Model(DRAG, cost=6354.0), tried, apart, {})

@@ -50,6 +50,26 @@ def by_free_windows(search: Search, steps: list[Step], least: float) -> list[Ste
     return steps
 
 
+def soaked_up(search: Search, current: Trial, tried: dict[str, Trial], loose: Trial, others: dict[str, Trial]) -> bool:
+    """Whether free windows are helped by laws with a state alone, whose trajectory misses more than that of the model without,
+    while an effect without one helps that trajectory by more.
+
+    Parameters
+    ----------
+    current, tried : one trajectory, and those with another effect by its name
+    loose, others : the same with free windows
+    """
+    laws, enough = search.bench.laws, demanded(search.bench)
+    helped = {n: gain(loose, t) for n, t in others.items() if gain(loose, t) > enough}
+    lost = [laws[n].states and _misses_more(search.known.get((others[n].names, True)), current) for n in helped]
+    along = max((gain(current, t) for n, t in tried.items() if not laws[n].states), default=0.0)
+    return bool(helped) and all(lost) and along > max(enough, *helped.values())
+
+
+def _misses_more(tied: Trial | None, current: Trial) -> bool:
+    return tied is not None and tied.cost > current.cost
+
+
 def _around(search: Search, trial: Trial) -> Iterator[Trial]:
     """A model of free windows, and those with another effect in the place of one of its own."""
     yield trial

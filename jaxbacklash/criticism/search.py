@@ -32,7 +32,7 @@ from .evidence import (
     worth,
 )
 from .joining import one_piece
-from .loose import by_free_windows
+from .loose import by_free_windows, soaked_up
 from .memories import Member, families, may_replace, members
 from .preference import AHEAD, advantage, lead, simplest
 from .recall import recalled
@@ -322,10 +322,11 @@ class Search(Unseen):
                 tried = {n: t for n, t in tried.items() if t.tied}
                 if lost:
                     # A trajectory in one piece has stuck on the way to a clear gain: this stage is judged on free windows, unless
-                    # they show nothing and another candidate went all the way.
+                    # they show nothing, or what no trajectory follows, and another candidate went all the way.
                     loose = self.loosened(current)
                     others = self.attempts(loose, ranking)
-                    if self.helps(loose, others) or not self.helps(current, tried):
+                    shown = self.helps(loose, others) and not soaked_up(self, current, tried, loose, others)
+                    if shown or not self.helps(current, tried):
                         current, tried = loose, others
             # Two of a family may each look better from the other, one with free windows and one without: none is kept twice.
             kept = {s.trial.names for s in steps}
