@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import equinox as eqx
 import numpy as np
 
 from ..errors import BadInput
+from ..fitting.counts import few_counts
 from ..fitting.equation_error import Start
 from ..fitting.estimates import judge
 from ..fitting.fit import ABSOLUTE, SCORE_WINDOW, Fit, prepare
@@ -148,6 +149,7 @@ def refine(
     clock["score"] = time.perf_counter()
     others = tuple(sorted(search.level, key=lambda names: search.level[names].criterion))
     verdict = judge_rest(steps[-1].trial, [s.fit for s in stages], unnamed(bench, steps[-1].trial))
+    verdict = replace(verdict, text=f"{verdict.text} {few_counts(last)}".rstrip())
     experiments = []
     for names in others[:SEPARATED]:
         progress(f"looking for an experiment that separates {' + '.join(names)}", 0.88)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..parameters import channel_unit
+from .counts import few_counts
 
 if TYPE_CHECKING:
     from .estimates import Estimate
@@ -91,4 +92,4 @@ def verdict_text(fit: Fit) -> str:
     missing = [e for e in fit.parameters.values() if e.value is None]
     if missing:
         sentence += " Not found: " + "; ".join(f"{e.label or e.name} ({e.why})" for e in missing) + "."
-    return sentence
+    return f"{sentence} {few_counts(fit)}".rstrip()

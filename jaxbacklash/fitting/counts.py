@@ -1,0 +1,59 @@
+"""An encoder whose counts are coarse beside the play: what counting adds is no noise, and no interval allows for it.
+
+Within a count the reading stands still, so that its error goes with the place and does not average out. Noise before the counting
+scatters it; where noise is less than a fraction of a count, play and stiffness of a few counts come out further off than their
+standard errors say.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..parameters import channel_unit
+
+if TYPE_CHECKING:
+    from .fit import Fit
+
+FEW = 10.0
+"""Counts in the play below which intervals do not hold (independent records: with four to seven, errors of three to six standard
+errors; with a hundred, none but by chance)."""
+SCATTERED = 0.4
+"""Noise, as a share of a count, that scatters what counting does: counting alone makes 0.29 of it."""
+SELDOM = 4
+"""Samples to each value that is there at least, or a column is not taken to be counted."""
+ROUNDING = 0.02
+"""What a reading may be off a whole number of counts by, as a share of a count: rows are written with a few digits."""
+
+
+def count_of(values: np.ndarray) -> float | None:
+    """The count of an encoder that made these readings (N,), in their unit; None where they are no whole numbers of any."""
+    readings = np.unique(values)
+    readings = readings[np.append(True, np.diff(readings) > 1e-9 * np.ptp(readings))]
+    if readings.size < 2 or SELDOM * readings.size > values.size:
+        return None
+    steps = np.diff(readings)
+    count = float(np.min(steps))
+    # The smallest step by itself may be off by the rounding of what was written down.
+    count = float(np.ptp(readings) / np.round(np.ptp(readings) / count))
+    off = np.abs(steps / count - np.round(steps / count))
+    return count if np.max(off) < ROUNDING else None
+
+
+def few_counts(fit: Fit) -> str:
+    """What is said of a fit whose play is only a few counts; nothing where it is more, or noise scatters the readings."""
+    play = fit.parameters.get("backlash")
+    if play is None or play.value is None or fit.system.observed == "T":
+        return ""
+    for record, noise in zip(fit.records, fit.noise):
+        name = record.observed_name
+        count = count_of(record.channels[name])
+        if count is None or noise > SCATTERED * count or not 0.0 < play.value < FEW * count:
+            continue
+        unit = channel_unit(name, translational=fit.translational)
+        return (
+            f"The play is only {play.value / count:.2g} counts of {count:.3g} {unit} in which {name} is read: intervals do not "
+            "allow for what counting does, nor is a small effect sure."
+        )
+    return ""
