@@ -63,7 +63,21 @@ def test_a_search_that_goes_on_in_vain_is_not_asked_again(monkeypatch):
     assert len(asked) == 2
 
 
-def test_dry_friction_is_not_begun_anew(monkeypatch):
+@pytest.mark.parametrize("done", [True, False])
+def test_dry_friction_beside_another_effect_is_begun_anew(monkeypatch, done):
+    """Stribeck's friction with drag had ended at 5684 at a corner, its damping 12 N m s/rad off and the held-out record missed by
+    six percent; begun anew from there it ended where the true model does, at 5657."""
+    search, final = Search(_bench()), Model(frozenset({"dry", "gravity"}), cost=5684.0, done=done)
+    monkeypatch.setattr(search, "finish", lambda trial: trial)
+    monkeypatch.setattr(search, "begun_again", lambda trial: replace(trial, cost=5657.0, done=True))
+    path = arrived(search, [Step(final, "dry", (), ())])
+    assert path[-1].trial.cost == 5657.0
+    monkeypatch.setattr(search, "begun_again", lambda trial: replace(trial, cost=9e9, done=True))
+    search.known.clear()
+    assert arrived(search, [Step(final, "dry", (), ())])[-1].trial is final
+
+
+def test_dry_friction_alone_is_not_begun_anew(monkeypatch):
     """From its parameters and the data one trajectory with dry friction ran away, and took a hundred steps for that."""
     search, final = Search(_bench()), Model(frozenset({"dry"}), cost=13961.0, done=False)
     monkeypatch.setattr(search, "finish", lambda trial: replace(trial, cost=13892.0))

@@ -161,14 +161,15 @@ class Search(Unseen):
         if apart:
             dry = [c for c in before.ranking if self.bench.laws[c.name].slides and self.bench.laws[c.name].port == "joint"]
             known |= {c.name: self.add(before.trial, c) for c in dry if c.gain > 0.0}
-        helpful = self.clear(before.trial, {n: t for n, t in known.items() if t is not None}, MUCH)
+        same = {n for n in known if self.bench.laws[n].states and (apart or n in final.names)}
+        helpful = self.clear(before.trial, {n: t for n, t in known.items() if t is not None and n not in same}, MUCH)
         if not helpful:
             return steps
         name = self.best(before.trial, helpful, MUCH)
         settled = self.settle(helpful[name])
         path = self.forward(settled, [*steps[:came], Step(settled, name, (), ())], MUCH)
-        other = path[-1].trial
-        ahead = other.tied and explained(other) and (apart or gain(final, other) > demanded(self.bench))
+        last = path[-1].trial
+        ahead = last.tied and explained(last) and (apart or gain(final, last) > demanded(self.bench))
         return path if ahead else steps
 
     def with_unseen(self, steps: list[Step]) -> list[Step]:
