@@ -131,3 +131,30 @@ def test_what_free_windows_are_helped_by_without_a_memory_is_followed():
     others = {n: Model(DRAG | {n}, cost=5384.0, tied=False) for n in ("lugre", "preload")}
     assert not loose.soaked_up(search, Model(DRAG, cost=6354.0), tried, apart, others)
     assert not loose.soaked_up(search, Model(DRAG, cost=6354.0), tried, apart, {})
+
+
+@pytest.mark.parametrize(
+    ("law", "tied", "gone_on"),
+    [("dahl", False, True), ("preload", False, False), ("dahl", True, False)],
+    ids=["a law that soaks", "a law without a state", "one trajectory"],
+)
+def test_what_had_no_turn_beside_a_law_that_soaks_gets_it(monkeypatch, law, tied, gone_on):
+    """An axis with friction at its ground and an offset: Dahl's took the offset's place in windows apart, was trimmed, and the
+    offset that had been tried beside it was never added."""
+    search, seen = Search(Bench()), []
+    search.bench.laws["dahl"] = SimpleNamespace(states=("s",))
+    base, first = Model(frozenset(), 9e4, tied=False, misfit=30.0), Model(frozenset({"gravity"}), 9e3, tied=tied, misfit=9.0)
+    soaks = Model(frozenset({"gravity", law}), 900.0, tied=False, misfit=3.0)
+    after = Model(frozenset({"gravity", "preload"}), 2e3, tied=False, misfit=4.0)
+    steps = [Step(base, None, (), ()), Step(first, "gravity", (), ()), Step(soaks, law, (), ())]
+
+    def forward(start, path, least):
+        seen.append((search.apart, start))
+        return [*path, Step(after, "preload", (), ())]
+
+    monkeypatch.setattr(search, "trim", lambda path: path[:-1] if path[-1].trial is soaks else path)
+    monkeypatch.setattr(search, "forward", forward)
+    found = loose.without_soaking(search, steps, 0.25)
+    assert seen == ([(True, first)] if gone_on else [])
+    assert [s.added for s in found] == [None, "gravity", *(["preload"] if gone_on else [])]
+    assert not search.apart

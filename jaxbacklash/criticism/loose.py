@@ -50,6 +50,20 @@ def by_free_windows(search: Search, steps: list[Step], least: float) -> list[Ste
     return steps
 
 
+def without_soaking(search: Search, steps: list[Step], least: float) -> list[Step]:
+    """The path trimmed and, where that has taken away a law with a state that soaked up what is missing, gone on with by effects
+    without one, which had no turn beside it."""
+    trimmed = search.trim(steps)
+    soaked = any(search.bench.laws[s.added].states for s in steps[len(trimmed) :] if s.added)
+    if not soaked or trimmed[-1].trial.tied or search.bench.outright:
+        return trimmed
+    search.apart = True
+    try:
+        return search.trim(search.forward(trimmed[-1].trial, trimmed, least))
+    finally:
+        search.apart = False
+
+
 def soaked_up(search: Search, current: Trial, tried: dict[str, Trial], loose: Trial, others: dict[str, Trial]) -> bool:
     """Whether free windows are helped by laws with a state alone, whose trajectory misses more than that of the model without,
     while an effect without one helps that trajectory by more.

@@ -32,7 +32,7 @@ from .evidence import (
     worth,
 )
 from .joining import one_piece
-from .loose import by_free_windows, soaked_up
+from .loose import by_free_windows, soaked_up, without_soaking
 from .memories import Member, families, may_replace, members
 from .preference import AHEAD, advantage, lead, simplest
 from .recall import recalled
@@ -93,7 +93,7 @@ class Search(Unseen):
                 steps = self.forward(steps[-1].trial, steps, LITTLE)
         steps = by_free_windows(self, self.with_static(steps), MUCH)
         steps = recalled(self, one_piece(self, self.with_yielding(self.with_unseen(steps)), MUCH), MUCH)
-        steps, self.level = self.swap(self.reduced(self.trim(self.with_kin(steps))))
+        steps, self.level = self.swap(self.reduced(without_soaking(self, self.with_kin(steps), MUCH)))
         for asked in (within_bounds, arrived, given_at_last, reshaped_at_last, arrived):
             if (other := asked(self, steps)) is not steps:
                 steps, self.level = self.swap(self.reduced(other))
