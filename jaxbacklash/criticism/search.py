@@ -168,8 +168,8 @@ class Search(Unseen):
         name = self.best(before.trial, helpful, MUCH)
         settled = self.settle(helpful[name])
         path = self.forward(settled, [*steps[:came], Step(settled, name, (), ())], MUCH)
-        last = path[-1].trial
-        ahead = last.tied and explained(last) and (apart or gain(final, last) > demanded(self.bench))
+        other = path[-1].trial
+        ahead = other.tied and explained(other) and (apart or gain(final, other) > demanded(self.bench))
         return path if ahead else steps
 
     def with_unseen(self, steps: list[Step]) -> list[Step]:
