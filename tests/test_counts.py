@@ -17,6 +17,7 @@ RIG = Rig(3.0, 0.025, 3.0 * (2.0 * np.pi * 10.0) ** 2, 2.0 * 0.05 * 3.0 * 2.0 * 
 
 def measured(count, noise=1e-4, digits=None):
     """A chirp of 8 s at 500 Hz, read in counts of ``count`` after that noise."""
+    pytest.importorskip("numba", reason="the generator needs numba")
     rng = np.random.default_rng(7)
     truth = simulate_truth(RIG, {}, make_excitation(rng, "chirp", 8.0), 500.0, 8.0)
     seen = measure(truth, rng, noise, noise, count)
