@@ -1,6 +1,7 @@
 """Every test runs in double precision; tests on shared records skip where those are absent."""
 
 import os
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -23,6 +24,14 @@ def pytest_collection_modifyitems(items):
     for item in items:
         if "shared" in item.keywords:
             item.add_marker(skip)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    """No test begins after the time (seconds since the epoch) in JAXBACKLASH_TESTS_UNTIL."""
+    until = os.environ.get("JAXBACKLASH_TESTS_UNTIL")
+    if until and time.time() > float(until):
+        pytest.skip("the time for tests is up")
 
 
 @pytest.fixture(scope="session")
