@@ -75,6 +75,36 @@ def test_they_go_on_from_the_window_before_as_long_as_that_helps(problem, monkey
     assert handed_on(problem, first, Levenberg()) == (first, 7)
 
 
+def aside(*windows):
+    """Windows that miss by four times the median square: more than noise makes of ten samples, and no fifth as usual."""
+    missed = np.ones(WINDOWS)
+    missed[list(windows)] = 2.0
+    return missed
+
+
+def test_one_that_misses_little_goes_on_from_the_window_before_where_a_look_finds_it_better(problem, monkeypatch):
+    steps = []
+
+    def minimise(problem, start, how):
+        steps.append((int(how.limit), np.array(start.starts[:, 5])))
+        return left.pop(0)
+
+    monkeypatch.setattr(module, "minimise", minimise)
+    first = ended(aside(5), 30.0)
+    assert not stuck_windows(problem, first).size
+    left = [ended(missing(), 20.0), ended(missing(), 19.0)]
+    found, taken = handed_on(problem, first, Levenberg())
+    assert (float(found.stats["cost"]), taken, len(left)) == (19.0, 7, 0)
+    assert steps[0][0] == module.LOOK < steps[1][0]
+    assert steps[0][1].tolist() == [4.0, -4.0]
+    # Where it is no better there, it moves more than the others, and stays as it is.
+    left = [ended(aside(5), 31.0)]
+    assert handed_on(problem, first, Levenberg()) == (first, 0)
+    # A second one in a row is left to the round after; many are no exception, and nothing is looked at.
+    assert module.better_led(problem, ended(aside(5, 10, 15), 30.0), Levenberg()) is None
+    assert not left
+
+
 def test_the_start_of_a_link_that_is_not_seen_is_not_read_off_its_samples(problem):
     problem.system.observed = "T"
     assert not stuck_windows(problem, ended(missing(21), 1.0)).size
@@ -128,6 +158,22 @@ def test_a_first_window_astray_bends_no_joint(monkeypatch, draw):
     assert found.misfit < 1.03
     for name in ("backlash", "stiffness", "damping"):
         assert values_of(found.system)[name] == pytest.approx(getattr(case.rig, name), rel=0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("phase", [0.0, 0.5 * np.pi])
+def test_one_window_of_two_hundred_at_the_wrong_edge_costs_no_evidence(phase):
+    """A ripple begun in another phase bent one start to the wrong edge: 2.5 times the median square, 240 by the criterion."""
+    pytest.importorskip("numba", reason="the generator needs numba")
+    from benchmarks.effect_strangers import make_case
+
+    case = make_case(18, 10.0, 53)
+    base, free, _ = base_system(case.record, "joint", case.rig.inertia)
+    bench = Workbench(case.record, base, free, 0.2)
+    ripple = catalogue()["torque_ripple"]
+    found = bench.fit({"torque_ripple": ripple(1.0, 91.0, phase)}, bench.fit({}, patience=60))
+    best = bench.fit({"torque_ripple": ripple(**case.values["torque_ripple"])}, patience=60)
+    assert found.criterion < best.criterion + 1.0
 
 
 @pytest.mark.slow

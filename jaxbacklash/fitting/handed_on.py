@@ -8,6 +8,7 @@ start was read off the end of a spline, where that is worst: curves through its 
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 
 import equinox as eqx
@@ -20,6 +21,9 @@ from .shooting import Problem, Unknowns, weighed
 WORSE, MATTERS, FEW = 5.0, 0.01, 0.05
 """A window has stuck that misses by so many times the median square; it matters where such windows hold that share of all misfit,
 and is an exception as long as they are no more than that share of all."""
+ASIDE, LOOK = 6.0, 5
+"""A window may have stuck that misses by so many standard deviations of what noise makes of a sum of squares; whether it has is
+looked at for so many steps."""
 ROUNDS = 4
 CURVES, STRETCHES = (1, 2, 3), (2, 4, 8)
 """Degrees of the curves that are laid through the first samples of a window, and the parts of it that they are laid through."""
@@ -38,12 +42,10 @@ def handed_on(problem: Problem, found: Minimum, how: Levenberg) -> tuple[Minimum
     taken = 0
     for _ in range(ROUNDS):
         stuck = stuck_windows(problem, found)
-        if not stuck.size:
+        begin = begun(found, led_anew(problem, found, stuck)) if stuck.size else better_led(problem, found, how)
+        if begin is None:
             break
-        on = follows(problem)[stuck]
-        starts = led_in(problem, found, stuck[~on])
-        starts[:, stuck[on]] = np.asarray(found.stats["predicted"].end)[stuck[on] - 1].T
-        again = minimise(problem, begun(found, starts), how)
+        again = minimise(problem, begin, how)
         taken += int(again.stats["steps"])
         if not float(again.stats["cost"]) < float(found.stats["cost"]):
             break
@@ -54,18 +56,52 @@ def handed_on(problem: Problem, found: Minimum, how: Levenberg) -> tuple[Minimum
 def stuck_windows(problem: Problem, found: Minimum) -> np.ndarray:
     """Windows that have stuck where the one before has not, or that none comes before, none where they are not what matters."""
     squares = squares_of(problem, found)
-    full = np.flatnonzero(np.sum(np.asarray(problem.windows.weight) > 0.0, axis=1) > 0)
-    if not full.size or not np.all(np.isfinite(squares[full])):
+    bad = exceptions(problem, squares, WORSE)
+    if np.sum(squares[bad]) < MATTERS * np.sum(squares):
         return np.zeros(0, int)
-    bad = np.zeros(squares.size, bool)
-    bad[full] = squares[full] > WORSE * np.median(squares[full])
-    if np.sum(bad) > FEW * full.size or np.sum(squares[bad]) < MATTERS * np.sum(squares):
-        return np.zeros(0, int)
-    on = follows(problem)
-    leads = on & ~np.concatenate([[True], bad[:-1]])
     # Where a link is that is not in the record cannot be read off it.
-    first = ~on & (problem.system.observed != "T")
-    return np.flatnonzero(bad & (leads | first))
+    first = ~follows(problem) & (problem.system.observed != "T")
+    return np.flatnonzero(bad & (led(problem, bad) | first))
+
+
+def better_led(problem: Problem, found: Minimum, how: Levenberg) -> Unknowns | None:
+    """Where a search begins anew whose few windows that miss by more than noise explains go on better from where those before
+    them have ended; None where they do not.
+
+    One of two hundred that meets the wrong edge may miss by no more than twice what the others do: little of all misfit, and
+    yet many times the evidence that an effect has to bring. Others only move further than the rest under what is missing, so
+    a look comes first.
+    """
+    samples = np.sum(np.asarray(problem.windows.weight) > 0.0, axis=1)
+    spread = np.sqrt(2.0 / max(1.0, float(np.median(samples[samples > 0])))) if np.any(samples) else np.inf
+    bad = exceptions(problem, squares_of(problem, found), 1.0 + ASIDE * spread)
+    doubtful = np.flatnonzero(bad & led(problem, bad))
+    if not doubtful.size:
+        return None
+    look = minimise(problem, begun(found, led_anew(problem, found, doubtful)), dataclasses.replace(how, limit=LOOK))
+    return look.value if float(look.stats["cost"]) < float(found.stats["cost"]) else None
+
+
+def exceptions(problem: Problem, squares: np.ndarray, worse: float) -> np.ndarray:
+    """Which windows (W,) miss by ``worse`` times the median square, none where they are many or one misses by no number."""
+    bad = np.zeros(squares.size, bool)
+    full = np.flatnonzero(np.sum(np.asarray(problem.windows.weight) > 0.0, axis=1) > 0)
+    if full.size and np.all(np.isfinite(squares[full])):
+        bad[full] = squares[full] > worse * np.median(squares[full])
+    return bad if np.sum(bad) <= FEW * full.size else np.zeros(squares.size, bool)
+
+
+def led(problem: Problem, bad: np.ndarray) -> np.ndarray:
+    """Which windows (W,) go on from one that is not ``bad``."""
+    return np.asarray(follows(problem) & ~np.concatenate([[True], bad[:-1]]))
+
+
+def led_anew(problem: Problem, found: Minimum, stuck: np.ndarray) -> np.ndarray:
+    """Starts (n, W) with those of ``stuck`` windows where the ones before have ended, or where the samples lead."""
+    on = follows(problem)[stuck]
+    starts = led_in(problem, found, stuck[~on])
+    starts[:, stuck[on]] = np.asarray(found.stats["predicted"].end)[stuck[on] - 1].T
+    return starts
 
 
 def led_in(problem: Problem, found: Minimum, first: np.ndarray) -> np.ndarray:
