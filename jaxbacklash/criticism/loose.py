@@ -7,6 +7,7 @@ then judged from there. Free windows tell less of small effects, but nothing hol
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from .candidates import may_join, rank
@@ -35,12 +36,9 @@ def by_free_windows(search: Search, steps: list[Step], least: float) -> list[Ste
     if not final.tied or not final.names or search.bench.outright or follows(final, search.loosened(final)):
         return steps
     base = search.loosened(steps[0].trial)
-    search.apart = True
-    try:
+    with _apart(search):
         path = search.forward(base, [Step(base, None, (), ())], least)
         found = sorted(_around(search, path[-1].trial), key=lambda t: t.criterion)
-    finally:
-        search.apart = False
     for free in [t for t in found if gain(found[0], t) > -2.0 * demanded(search.bench)][:TIED]:
         tied = search.settle(free)
         if tied.tied and explained(tied) and gain(final, tied) > demanded(search.bench):
@@ -57,9 +55,16 @@ def without_soaking(search: Search, steps: list[Step], least: float) -> list[Ste
     soaked = any(search.bench.laws[s.added].states for s in steps[len(trimmed) :] if s.added)
     if not soaked or trimmed[-1].trial.tied or search.bench.outright:
         return trimmed
+    with _apart(search):
+        return search.trim(search.forward(trimmed[-1].trial, trimmed, least))
+
+
+@contextmanager
+def _apart(search: Search) -> Iterator[None]:
+    """Windows are left free, and laws with states out of it."""
     search.apart = True
     try:
-        return search.trim(search.forward(trimmed[-1].trial, trimmed, least))
+        yield
     finally:
         search.apart = False
 
