@@ -1,0 +1,50 @@
+"""How the user wants a file read: one object for the command line, Python and `look` alike."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from types import MappingProxyType
+
+NONE: Mapping = MappingProxyType({})
+
+
+@dataclasses.dataclass(frozen=True)
+class ReadOptions:
+    """What was said about a file. A flag given on purpose switches off the check that asked for it, and no other.
+
+    Parameters
+    ----------
+    columns : mapping of str
+        Columns by channel: a name as in the file, "#3" for the third, "group/channel" where channels come in groups.
+    units : mapping of str
+        Units of channels; they override those that the file states. See `units.UNITS`.
+    scales : mapping of float
+        Factors of channels.
+    resample : bool or float or None
+        True brings uneven times to an even grid at the record's own rate, and bridges short runs of NaN and lost rows; a
+        number is the rate wanted [Hz].
+    rate : float or None
+        Samples per second of a file without a time column, or with times that cannot be used [Hz].
+    skip : int
+        Lines at the beginning of a text file to pass over.
+    unwrap : frozenset of str
+        Channels whose jumps by a full turn (2 pi, 360 degrees, 2^n counts) are undone.
+    ratio : float or None
+        Turns of x for a turn of the link: x is divided by it.
+    sign : frozenset of str
+        Channels measured the other way round: turned.
+    despike : frozenset of str
+        Channels in which single samples that stand out (spikes, sentinels such as 0 or -9999) are left out.
+    """
+
+    columns: Mapping[str, str] = NONE
+    units: Mapping[str, str] = NONE
+    scales: Mapping[str, float] = NONE
+    resample: bool | float | None = None
+    rate: float | None = None
+    skip: int = 0
+    unwrap: frozenset[str] = frozenset()
+    ratio: float | None = None
+    sign: frozenset[str] = frozenset()
+    despike: frozenset[str] = frozenset()
