@@ -36,6 +36,10 @@ class ReadOptions:
         Channels measured the other way round: turned.
     despike : frozenset of str
         Channels in which single samples that stand out (spikes, sentinels such as 0 or -9999) are left out.
+    decimal : str or None
+        The decimal mark of a text file, "." or ",", where the file can be read both ways.
+    start, stop : float or None
+        Only the samples between these times of the file are used [s].
     """
 
     columns: Mapping[str, str] = NONE
@@ -48,3 +52,6 @@ class ReadOptions:
     ratio: float | None = None
     sign: frozenset[str] = frozenset()
     despike: frozenset[str] = frozenset()
+    decimal: str | None = None
+    start: float | None = None
+    stop: float | None = None
