@@ -28,6 +28,10 @@ class Finding:
         The first rows concerned (from 0).
     size : float or None
         Its size in SI: the lag [s], the ratio, the relative difference of clocks.
+    bridged : tuple of int
+        Rows (from 0) of the channel that are replaced by what its neighbours give, see `findings.mend.after`.
+    left_out : int
+        Rows at the beginning of the record that are left out.
     """
 
     kind: str
@@ -37,8 +41,12 @@ class Finding:
     remedy: str = ""
     rows: tuple[int, ...] = ()
     size: float | None = None
+    bridged: tuple[int, ...] = ()
+    left_out: int = 0
 
     def sentence(self, where: str) -> str:
-        """The whole sentence, for the file called ``where``."""
-        remedy = f"; {self.remedy}" if self.remedy else ""
-        return f"{where}, column {self.channel}: {self.found}{remedy}."
+        """The whole sentence, for the file called ``where``; one that refuses or asks says how to answer it."""
+        ways = [self.remedy] if self.remedy else []
+        if self.action != WARN:
+            ways.append(f"--accept {self.kind}{' if it is right as it is' if ways else ''}")
+        return f"{where}, column {self.channel}: {self.found}{'; pass ' if ways else ''}{', or '.join(ways)}."

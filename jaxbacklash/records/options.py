@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from types import MappingProxyType
-
-NONE: Mapping = MappingProxyType({})
 
 
 @dataclasses.dataclass(frozen=True)
@@ -40,11 +37,13 @@ class ReadOptions:
         The decimal mark of a text file, "." or ",", where the file can be read both ways.
     start, stop : float or None
         Only the samples between these times of the file are used [s].
+    accept : frozenset of str
+        Kinds of finding that the user has looked at and believes right as they are: rows of `findings.rules.RULES`.
     """
 
-    columns: Mapping[str, str] = NONE
-    units: Mapping[str, str] = NONE
-    scales: Mapping[str, float] = NONE
+    columns: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    units: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    scales: Mapping[str, float] = dataclasses.field(default_factory=dict)
     resample: bool | float | None = None
     rate: float | None = None
     skip: int = 0
@@ -55,3 +54,4 @@ class ReadOptions:
     decimal: str | None = None
     start: float | None = None
     stop: float | None = None
+    accept: frozenset[str] = frozenset()
