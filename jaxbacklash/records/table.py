@@ -24,12 +24,15 @@ class Column:
         As the file states it ("deg", "ms"), in its own spelling; empty where it states none.
     clock : array of shape (N,) or None
         Times of this column's own samples [s], where the file keeps one for each channel.
+    aliases : tuple of str
+        Other names by which a user may ask for it: the path "signals(1).values" of a signal that is listed by its label.
     """
 
     name: str
     values: np.ndarray
     unit: str = ""
     clock: np.ndarray | None = None
+    aliases: tuple[str, ...] = ()
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -52,6 +55,9 @@ class Table:
         Samples per second where the file states that beside the samples, as scopes and loggers do; None where it does not.
     first_line : int or None
         Line of the file (from 1) that holds the first row, for messages; None for files without lines.
+    left_out : dict of str
+        What the file holds beside its columns, by name, as the middle of a sentence ("complex values", "an array of shape
+        (3, 3)"): said when somebody asks for it.
     """
 
     columns: tuple[Column, ...]
@@ -60,11 +66,16 @@ class Table:
     notes: tuple[str, ...] = ()
     rate_hz: float | None = None
     first_line: int | None = None
+    left_out: dict[str, str] = dataclasses.field(default_factory=dict)
 
     @property
     def names(self) -> list[str]:
         """Names of the columns, in order."""
         return [column.name for column in self.columns]
+
+    def called(self, name: str) -> list[Column]:
+        """The columns of this name; where there are none, those that may be asked for by it too."""
+        return [one for one in self.columns if one.name == name] or [one for one in self.columns if name in one.aliases]
 
     @property
     def rows(self) -> int:

@@ -1,0 +1,88 @@
+"""What every reader of a binary format needs around its library: a sentence where the library is missing, is given a
+damaged file or runs out of memory, and quiet where it would print."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import logging
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+from jaxbacklash.errors import BadInput
+
+from ..checks import wrong
+
+MAX_BYTES = 2 << 30
+"""The most that the columns of one file may take in memory [bytes]: 268 million numbers. A file of a few kilobytes can claim
+terabytes, so this is asked before anything is allocated."""
+
+
+def library(module: str, package: str, path: Path, kind: str, instead: str = "") -> ModuleType:
+    """Import what reads a format.
+
+    Parameters
+    ----------
+    module, package : str
+        The module, and the name of the package that pip installs.
+    path, kind, instead : Path, str, str
+        For the sentence: the file, what it is ("a TDMS file"), and another way out.
+
+    Raises
+    ------
+    BadInput
+        The library is not installed.
+    """
+    try:
+        with quiet():
+            return importlib.import_module(module)
+    except ImportError:
+        way_out = f'{package} to read it: pip install "jaxbacklash[io]"{instead}'
+        raise wrong(str(path), kind, way_out) from None
+
+
+@contextlib.contextmanager
+def guarded(path: Path, kind: str, wanted: str) -> Iterator[None]:
+    """Turn whatever a library raises on a damaged file into `BadInput`.
+
+    Parameters
+    ----------
+    path : Path
+    kind, wanted : str
+        "a file that is damaged or no TDMS file", "a complete file; copy it again".
+    """
+    where = str(path)
+    with quiet():
+        try:
+            yield
+        except (BadInput, KeyboardInterrupt):
+            raise
+        except MemoryError as why:
+            size = f"{path.stat().st_size / 1e6:.3g} MB"
+            raise wrong(where, f"more numbers than fit into memory (the file has {size})", "a shorter record") from why
+        except RecursionError as why:
+            raise wrong(where, "values nested deeper than any record is", wanted) from why
+        except Exception as why:  # The libraries raise whatever the damage happens to trip.
+            raise wrong(where, kind, wanted) from why
+
+
+@contextlib.contextmanager
+def quiet() -> Iterator[None]:
+    """Keep a library's warnings and log lines, which speak of its own insides, off the user's terminal."""
+    before = logging.root.manager.disable
+    logging.disable(logging.CRITICAL)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        logging.disable(before)
+
+
+def bounded(size: int, where: str, what: str = "numbers") -> None:
+    """Refuse what would take more than `MAX_BYTES` in memory; ``size`` in bytes, as the file claims it."""
+    if size > MAX_BYTES:
+        most = f"at most {MAX_BYTES / 1e9:.2g} GB: a shorter record or a lower rate"
+        raise wrong(where, f"{what} that take {size / 1e9:.4g} GB by what the file says", most)
