@@ -17,7 +17,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand
 
-from .errors import BadInput, NoAnswer
+from .errors import BadInput
 
 app = typer.Typer(
     name="jaxbacklash",
@@ -34,7 +34,10 @@ class Computation(TyperCommand):
 
     def invoke(self, ctx: Any) -> Any:
         """Run it as the program computes, its last run's programs on their way."""
+        from .commands.doors import check
         from .program import cache_folder, start
+
+        check(self.name or "", ctx.params, {p.name: max(p.opts, key=len) for p in self.params})
 
         start(brief=self.name != "map")  # a map computes for long
         from .read_ahead import reading_ahead
@@ -48,8 +51,10 @@ computes = functools.partial(app.command, cls=Computation)
 
 def there(found: Any) -> Any:
     """The path or paths given, if there is something: a wrong name need not wait for libraries to load."""
+    from .commands.doors import state_of
+
     for path in found if isinstance(found, list) else [found]:
-        if path is not None and not path.exists():
+        if path is not None and state_of(path) is None:
             raise BadInput(f"{path}: found no such file, wanted a record.")
     return found
 
@@ -337,36 +342,29 @@ def _plain_warning(message: Any, category: Any, filename: str, lineno: int, file
 
 
 def main() -> None:
-    """Run the command line; every foreseeable error ends in one sentence and an exit code."""
+    """Run the command line; every error ends in one sentence and an exit code, see `commands.outcome`."""
+    from .commands.outcome import let_go_of_output, say, told
+    from .stopping import end_when_told
+
+    end_when_told()
     warnings.showwarning = _plain_warning
+    for stream in (sys.stdout, sys.stderr):  # names of files may hold what the terminal's letters cannot show
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="backslashreplace")
     # Much is loaded, most of it stays, and a command ends soon: looking through all of it for garbage is a fifth of the time.
     gc.set_threshold(100_000, 50, 100)
     atexit.register(gc.freeze)  # nor once more when all of it goes anyway, which took longer than a fit
     try:
-        app(standalone_mode=False)
-    except BadInput as error:
-        sys.exit(_say(f"error: {error}", 2))
-    except NoAnswer as error:
-        sys.exit(_say(f"no answer: {error}", 1))
-    except typer.Exit as end:
-        sys.exit(end.exit_code)
-    except (KeyboardInterrupt, typer.Abort):
-        sys.exit(_say("stopped", 1))
-    except BrokenPipeError:
-        sys.exit(1)
-    except Exception as error:
-        if not hasattr(error, "format_message"):
-            raise
-        if len(sys.argv) < 2:  # without any word the parser answers with the help
+        code = app(standalone_mode=False)  # the exit code where the parser ended the command, after --help
+        sys.stdout.flush()
+    except BaseException as error:
+        if len(sys.argv) < 2 and hasattr(error, "format_message"):  # without any word the parser answers with the help
             print(error.format_message(), file=sys.stderr)
             sys.exit(2)
-        # A wrong word on the command line.
-        sys.exit(_say(f"error: {' '.join(error.format_message().split())}", 2))
-
-
-def _say(sentence: str, code: int) -> int:
-    print(" ".join(sentence.split()), file=sys.stderr)
-    return code
+        code = say(*told(error))
+        if isinstance(error, OSError):
+            let_go_of_output()
+    sys.exit(code if isinstance(code, int) else 0)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import json
 import sys
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -27,6 +27,7 @@ from ..records import (
     read_series,
 )
 from ..system import System
+from ..whole_file import write_whole
 
 
 @dataclass(frozen=True)
@@ -120,16 +121,15 @@ def out_folder(path: Path | None) -> Path | None:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise BadInput(f"--out {path}: cannot make this folder ({error.strerror}), wanted a folder to write into") from None
-    Thread(target=import_module, args=("..report.figures", __package__), daemon=True).start()
+    with suppress(RuntimeError):  # no more threads: it is loaded when it is needed
+        Thread(target=import_module, args=("..report.figures", __package__), daemon=True).start()
     return path
 
 
 def write_text(path: Path, text: str) -> None:
     """Write a file whole or not at all."""
-    part = path.with_name(path.name + ".part")
     try:
-        part.write_text(text, encoding="utf-8")
-        part.replace(path)
+        write_whole(path, text)
     except OSError as error:
         raise BadInput(f"--out {path}: cannot be written ({error.strerror})") from None
 

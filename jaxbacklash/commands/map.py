@@ -19,6 +19,7 @@ from ..dynamics.labels import need_h5netcdf, write_netcdf
 from ..dynamics.maps import Request, labelled_map, request
 from ..dynamics.tiles import need_zarr
 from ..errors import BadInput
+from ..whole_file import write_whole
 from .common import json_text, progress
 
 MOST = 10_000_000
@@ -172,7 +173,7 @@ def picture(map_: Any, result: dict[str, Any], out: Path) -> None:
     png = map_report(map_, result, " ".join(words(result)[:2]), out.with_suffix(".html"))
     target = out.with_suffix(".png")
     try:
-        target.write_bytes(png)
+        write_whole(target, png)
     except OSError as error:
         raise BadInput(f"--out {target}: cannot be written ({error.strerror})") from None
 

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import BadInput
+from ..whole_file import whole_file
 from .maps import KEPT, VARIABLES, Request, package_version
 from .periodicity import CHAOTIC, UNRESOLVED
 from .tiles import MemoryTiles, TileStore, shape_of
@@ -145,18 +146,15 @@ def write_netcdf(map_: Any, path: str | os.PathLike[str]) -> None:
     """
     h5netcdf = need_h5netcdf()
     target = Path(path)
-    part = target.with_name(target.name + ".part")
     try:
-        with h5netcdf.File(part, "w") as file:
+        with whole_file(target) as part, h5netcdf.File(part, "w") as file:
             file.dimensions = {str(name): int(size) for name, size in map_.sizes.items()}
             for key, value in map_.attrs.items():
                 file.attrs[key] = value
             coordinates = map_.coordinates if isinstance(map_, Labelled) else {}  # a Dataset's are among its variables
             for name, variable in {**coordinates, **map_.variables}.items():
                 _write_variable(file, str(name), variable)
-        part.replace(target)
     except OSError as error:
-        part.unlink(missing_ok=True)
         raise BadInput(f"--out {target}: cannot be written ({error.strerror or error})") from None
 
 

@@ -1,7 +1,6 @@
 """Write a record to a file that `read_record` gives back."""
 
 import csv
-import os
 import zipfile
 from collections.abc import Callable
 from os import PathLike
@@ -10,6 +9,7 @@ from typing import BinaryIO
 
 import numpy as np
 
+from ..whole_file import whole_file
 from .checks import listed, wrong
 from .record import Record
 
@@ -37,15 +37,9 @@ def write_record(record: Record, path: str | PathLike[str]) -> None:
         raise wrong(str(path), f'the suffix "{path.suffix}" for a record to write', f"one of {listed(WRITERS)}")
     columns = {"t": record.t, **record.channels}
     columns |= {name: values for name, values in record.extras.items() if name not in columns}
-    # The process number keeps two programs that write the same record apart.
-    unfinished = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
-        try:
-            with open(unfinished, "wb") as file:
-                write(file, columns)
-            os.replace(unfinished, path)
-        finally:
-            unfinished.unlink(missing_ok=True)
+        with whole_file(path) as unfinished, open(unfinished, "wb") as file:
+            write(file, columns)
     except OSError as why:
         raise wrong(str(path), f"that it cannot be written ({why.strerror or why})", "a place that can") from why
 

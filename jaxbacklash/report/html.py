@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import re
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -15,6 +14,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from ..errors import BadInput
+from ..whole_file import write_whole
 from .series import series_json
 from .style import GAP, HELDOUT, MEASURED, MODEL
 from .summary import summarise
@@ -81,18 +81,9 @@ def write_report(
     """
     target = Path(path)
     text = render(result, figures, series)
-    part = None
     try:
-        with tempfile.NamedTemporaryFile(
-            "w", encoding="utf-8", dir=target.parent, prefix=f".{target.name}.", delete=False
-        ) as file:
-            part = Path(file.name)
-            file.write(text)
-        part.chmod(0o644)  # a temporary file begins readable by its owner alone
-        part.replace(target)
+        write_whole(target, text)
     except OSError as error:
-        if part is not None:
-            part.unlink(missing_ok=True)
         raise BadInput(
             f"{target}: the report cannot be written ({error.strerror}), wanted a folder to write into"
         ) from None
