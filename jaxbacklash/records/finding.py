@@ -19,7 +19,7 @@ class Finding:
     action : str
         `REFUSE`, `WARN` or `ASK`.
     channel : str
-        The channel it is about ("t", "x", ...), or the name of a column.
+        The channel it is about ("t", "x", ...), or the name of a column; empty where it is about whole rows.
     found : str
         What was found and where (rows from 1), the middle of a sentence: "jumps by 2 pi, the first at row 812".
     remedy : str
@@ -49,4 +49,5 @@ class Finding:
         ways = [self.remedy] if self.remedy else []
         if self.action != WARN:
             ways.append(f"--accept {self.kind}{' if it is right as it is' if ways else ''}")
-        return f"{where}, column {self.channel}: {self.found}{'; pass ' if ways else ''}{', or '.join(ways)}."
+        place = f"{where}, column {self.channel}" if self.channel else where
+        return f"{place}: {self.found}{'; pass ' if ways else ''}{', or '.join(ways)}."

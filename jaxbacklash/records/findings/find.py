@@ -6,11 +6,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from jaxbacklash.records.finding import Finding
+from jaxbacklash.records.finding import WARN, Finding
 from jaxbacklash.records.options import ReadOptions
 
-from . import jumps
+from . import answers, held, jumps, limits, quantities, relations, spikes, stamps
 from .rules import silenced
+
+SHORTEST = 64
+"""Samples from which noise and motion can be told apart, see `checks.MIN_SAMPLES`."""
 
 
 def find(
@@ -43,9 +46,23 @@ def find(
     list of Finding
         Those that refuse or ask first. What the user has answered is not among them.
     """
-    found = [*jumps.wraps(channels)]
-    found = [one for one in found if not silenced(one.kind, one.channel, options, units_stated)]
-    return sorted(found, key=lambda one: one.action == "warn")
+    channels = {name: values for name, values in channels.items() if values.size >= SHORTEST}
+    if not channels:
+        return []
+    found = [
+        *quantities.quantities(channels, options),
+        *jumps.wraps(channels),
+        *spikes.spikes(channels),
+        *held.held(channels),
+        *limits.clipped(channels),
+        *answers.answers(t, channels),
+    ]
+    # What has jumped shifts too, and neither follows anything.
+    if not any(one.kind in ("wrap", "sentinel", "spike", "held", "stale") for one in found):
+        found += jumps.shifts(channels)
+    if all(one.action == WARN for one in found):
+        found += relations.relations(channels, extras)
+    return _open(found, options, units_stated)
 
 
 def find_in_times(t: np.ndarray, options: ReadOptions, *, units_stated: frozenset[str] = frozenset()) -> list[Finding]:
@@ -62,4 +79,10 @@ def find_in_times(t: np.ndarray, options: ReadOptions, *, units_stated: frozense
     list of Finding
         About the channel "t".
     """
-    return []
+    return _open(stamps.stamps(t), options, units_stated)
+
+
+def _open(found: list[Finding], options: ReadOptions, units_stated: frozenset[str]) -> list[Finding]:
+    """Those that the user has not answered, warnings last."""
+    found = [one for one in found if not silenced(one.kind, one.channel, options, units_stated)]
+    return sorted(found, key=lambda one: one.action == WARN)

@@ -1,4 +1,4 @@
-"""Jumps of a position that no mass makes: an encoder that begins anew after a full turn."""
+"""Jumps of a position that no mass makes: an encoder that begins anew after a full turn, or has lost counts for good."""
 
 from __future__ import annotations
 
@@ -6,15 +6,24 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from jaxbacklash.records.finding import REFUSE, Finding
+from jaxbacklash.records.finding import ASK, REFUSE, Finding
 
-POSITIONS = ("x", "y", "z")
+from .local import POSITIONS, SURPRISE_OF_NOISE, around, level, quantum, surprise
+
 TURNS = {2 * np.pi: "2 pi", np.pi: "pi", 360.0: "360", 180.0: "180"}
 """Where angles begin anew, in rad and degrees."""
-CLEAR = 20.0
-"""Times the usual step around it that a jump is at least."""
+COUNTS = range(8, 33)
+"""Bits of counters that overflow."""
+KNOWN, UNKNOWN = 4.0, 20.0
+"""Times the steps beside it that a jump is at least, of a known turn, whose size is evidence in itself, and of another."""
 MATCH = 2e-3
 """Share of a turn by which a jump, less the motion around it, may miss it: noise and what the motion curves by."""
+AGAIN = 3
+"""Jumps of one size, which is the whole range of the channel, that make it a turn though it is no known one."""
+SHIFT = 20.0
+"""Times the noise and the liveliness of the motion around it that a lasting shift is at least."""
+SHIFTS = 5
+"""More shifts than this are how the thing moves: a stepper, a base moved by a staircase."""
 
 
 def wraps(channels: Mapping[str, np.ndarray]) -> list[Finding]:
@@ -30,39 +39,72 @@ def wraps(channels: Mapping[str, np.ndarray]) -> list[Finding]:
     return found
 
 
-def jumps_of(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Rows (of the sample before) and sizes of the steps that are far larger than those around them.
-
-    A size is free of the motion around it: the mean of the steps before and after is taken off.
-    """
-    steps = np.diff(values)
-    if steps.size < 8:
-        return np.zeros(0, dtype=int), np.zeros(0)
-    size = np.abs(steps)
-    # Only the largest can be jumps; a hundred times the usual step costs nothing to look at.
-    rows = np.flatnonzero(size > np.maximum(0.1 * (values.max() - values.min()), CLEAR * np.median(size)))
-    if not rows.size or rows.size > steps.size / 10:
-        return np.zeros(0, dtype=int), np.zeros(0)
-    jump = np.zeros(steps.size, dtype=bool)
-    jump[rows] = True
-    calm = np.flatnonzero(~jump)
-    at = np.searchsorted(calm, rows)
-    before, after = steps[calm[np.maximum(at - 1, 0)]], steps[calm[np.minimum(at, calm.size - 1)]]
-    sizes = steps[rows] - (before + after) / 2
-    clear = np.abs(sizes) > CLEAR * np.maximum(np.abs(before), np.abs(after))
-    return rows[clear], sizes[clear]
-
-
 def turn_of(values: np.ndarray) -> tuple[float, np.ndarray] | None:
     """The turn by which a position jumps, in its own unit, and the rows before the jumps; None where it does not."""
-    rows, sizes = jumps_of(values)
-    if not rows.size:
+    steps = np.diff(values)
+    span = values.max() - values.min()
+    rows = np.flatnonzero(np.abs(steps) > 0.4 * span)
+    if not rows.size or rows.size > steps.size / 10:
         return None
+    jumping = np.zeros(steps.size, dtype=bool)
+    jumping[rows] = True
+    calm = np.flatnonzero(~jumping)
+    at = np.searchsorted(calm, rows)
+    before, after = steps[calm[np.maximum(at - 1, 0)]], steps[calm[np.minimum(at, calm.size - 1)]]
+    sizes = np.abs(steps[rows] - (before + after) / 2)
+    beside = np.maximum(np.abs(before), np.abs(after))
     turns = list(TURNS)
-    if np.array_equal(values, np.round(values)):
-        turns += [2.0**n for n in range(8, 33)]
+    if np.array_equal(values[:4096], np.round(values[:4096])):
+        turns += [2.0**bits for bits in COUNTS]
+    clear = sizes > KNOWN * beside
     for turn in turns:
-        fits = np.abs(np.abs(sizes) - turn) < MATCH * turn
+        fits = clear & (np.abs(sizes - turn) < MATCH * turn + np.abs(after - before))
         if fits.any():
             return turn, rows[fits]
-    return None
+    # Counts in some unit, or turns: the jump is as large as the range, since one ends where the other begins.
+    clear = (sizes > UNKNOWN * beside) & (sizes > 0.97 * span)
+    turn = float(np.median(sizes[clear])) if clear.any() else 0.0
+    same = clear & (np.abs(sizes - turn) < MATCH * turn + np.abs(after - before))
+    # Moving on before and after, the other way than it jumps: not the steps of a base that rests between them.
+    onward = np.sign(before + after) == -np.sign(steps[rows])
+    return (turn, rows[same]) if np.count_nonzero(same & onward) >= AGAIN and same.all() else None
+
+
+def shifts_of(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rows (of the last sample before) and sizes of lasting shifts of a position that moves on as before."""
+    none = np.zeros(0, dtype=int), np.zeros(0)
+    r = surprise(values)
+    usual = level(r)
+    floor = max(usual * SURPRISE_OF_NOISE, 0.3 * quantum(values))
+    rows = np.flatnonzero(np.abs(r) > 0.5 * SHIFT * floor)
+    if not rows.size or rows.size > 50 * SHIFTS:
+        return none
+    rows = np.unique(np.concatenate([rows - 1, rows]))
+    rows = rows[(rows >= 3) & (rows < values.size - 5)]
+    if not rows.size:
+        return none
+    pattern = np.array([0.0, -1.0, 3.0, -3.0, 1.0, 0.0]) / 6.0
+    seen = r[rows[:, None] + np.arange(-2, 4)]
+    sizes = seen @ pattern / (pattern @ pattern)
+    left = np.sqrt(np.mean((seen - sizes[:, None] * pattern) ** 2, axis=1))
+    usual_here = np.maximum(around(np.abs(r), rows), floor)
+    clear = (np.abs(sizes) > SHIFT * usual_here) & (left < 1.8 * usual_here + 0.02 * np.abs(sizes))
+    rows, sizes = rows[clear], sizes[clear]
+    return (rows, sizes) if rows.size <= SHIFTS else none
+
+
+def shifts(channels: Mapping[str, np.ndarray]) -> list[Finding]:
+    """Counts lost: x, y or z alone goes on from another zero."""
+    every = {name: shifts_of(channels[name]) for name in POSITIONS if name in channels}
+    found = []
+    for name, (rows, sizes) in every.items():
+        # A base that really jumps takes y along, or z the other way.
+        others = [row for other, (those, _) in every.items() if other != name for row in those]
+        alone = ~np.isin(rows, others)
+        if not alone.any():
+            continue
+        rows, sizes = rows[alone], sizes[alone]
+        more = f" and {rows.size - 1} more" if rows.size > 1 else ""
+        what = f"shifts by {sizes[0]:.4g} between rows {rows[0] + 1} and {rows[0] + 2}{more} and moves on: counts look lost"
+        found.append(Finding("shift", ASK, name, what, f"--unwrap {name}", tuple(rows.tolist()), float(sizes[0])))
+    return found

@@ -8,7 +8,8 @@ import numpy as np
 
 from jaxbacklash.records.finding import Finding
 
-from . import jumps
+from . import held, jumps, spikes
+from .local import bridge
 
 
 def unwrap(values: np.ndarray, turn: float | None = None) -> np.ndarray:
@@ -38,27 +39,17 @@ def unwrap(values: np.ndarray, turn: float | None = None) -> np.ndarray:
     return np.unwrap(values, period=turn)
 
 
-def bridge(values: np.ndarray, rows: Sequence[int] | np.ndarray) -> np.ndarray:
-    """Values whose samples at ``rows`` (from 0) are replaced by a cubic through the two good ones on either side."""
-    rows = np.unique(np.asarray(rows, dtype=int))
-    good = np.ones(values.size, dtype=bool)
-    good[rows] = False
-    kept = np.flatnonzero(good)
-    out = values.copy()
-    if kept.size < 4 or not rows.size:
-        return out
-    first = np.clip(np.searchsorted(kept, rows) - 2, 0, kept.size - 4)
-    knots = kept[first[:, None] + np.arange(4)]
-    # Lagrange's form of the cubic through four points, for all rows at once.
-    total = np.zeros(rows.size)
-    for i in range(4):
-        term = values[knots[:, i]]
-        for j in range(4):
-            if j != i:
-                term = term * (rows - knots[:, j]) / (knots[:, i] - knots[:, j])
-        total += term
-    out[rows] = total
-    return out
+def unshift(values: np.ndarray) -> np.ndarray:
+    """A position (N,) without its lasting shifts: what comes after a loss of counts is moved back by it."""
+    for row, size in zip(*jumps.shifts_of(values), strict=True):
+        values = np.concatenate([values[: row + 1], values[row + 1 :] - size])
+    return values
+
+
+def despiked(values: np.ndarray) -> np.ndarray:
+    """A channel (N,) whose samples that were never measured (`spikes.bad_rows`, `held.stale_rows`) are bridged by the others."""
+    rows = np.union1d(spikes.bad_rows(values), held.stale_rows(values))
+    return bridge(values, rows) if rows.size else values
 
 
 def after(

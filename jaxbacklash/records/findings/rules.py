@@ -32,14 +32,90 @@ class Rule:
 
 RULES: dict[str, Rule] = {
     "wrap": Rule(
-        "jumps of x, y or z by a full turn (2 pi, 360, 1, 2^n counts, or the channel's own range, again and again)",
-        "20 times what the steps around it differ by: no mass moves a turn between two samples",
+        "jumps of x, y or z by a full turn (2 pi, 360, 2^n counts, or the channel's own range again and again)",
+        "4 times the steps beside it for a known turn, 20 for another: no mass moves a turn between two samples",
         REFUSE,
         "--unwrap",
     ),
-    "clipped": Rule("a sensor at its stop", "3 runs of 5 equal values at the limit, 5 times as many as beside it", WARN),
+    "shift": Rule(
+        "a lasting shift of x, y or z alone, which moves on as before: counts lost",
+        "20 times noise and motion around it, at most 5 of them: more are how a stepper moves",
+        ASK,
+        "--unwrap",
+    ),
+    "sentinel": Rule(
+        "codes of failed readings: a value two ranges beyond all others, 0 between samples that are not near it",
+        "up to a thousandth of the samples of a position is bridged with a warning, more asks",
+        ASK,
+        "--despike",
+    ),
+    "spike": Rule(
+        "single samples of x, y or z that stand out of the motion, though not as a corner does",
+        "20 times noise and motion around it; up to a thousandth of the samples is bridged with a warning, more asks",
+        ASK,
+        "--despike",
+    ),
+    "held": Rule(
+        "a channel with a new value every k-th row only",
+        "4 of 5 runs of equal values have one length, and values differ by more counts than a slow encoder's",
+        ASK,
+        "--despike",
+    ),
+    "stale": Rule(
+        "samples that repeat the one before amid motion",
+        "motion of 6 counts a sample; a thousandth of the samples is bridged with a warning, more asks",
+        ASK,
+        "--despike",
+    ),
     "held rows": Rule("all channels stand still for 4 rows and then jump", "3 times the usual step", WARN),
+    "clipped": Rule("a sensor or a force at its limit", "3 runs of 5 equal values, 5 times as many as beside the limit", WARN),
+    "gear": Rule(
+        "y that follows x in slow motion at another factor than 1",
+        "1.3, in two neighbouring octaves alike, coherent and in step",
+        ASK,
+        "--ratio",
+    ),
+    "sign": Rule(
+        "y that follows -x in slow motion; z that is x - y, or grows against x with the frequency",
+        "as for a gear; a tenth of z",
+        ASK,
+        "--sign",
+    ),
+    "absolute": Rule("z that follows x one to one in slow motion: it is y", "as for a gear", ASK, "--columns"),
     "contradiction": Rule("x, y and z all present, z not y - x", "a tenth of z's own standard deviation", WARN),
+    "axes": Rule(
+        "x, y and z all present and no one joint's: three axes of an accelerometer",
+        "0.7 of z's own standard deviation",
+        ASK,
+        "--columns",
+    ),
+    "quantity": Rule("a position read from a column named as an acceleration or a rate of turn", "its name", ASK),
+    "counts": Rule("whole numbers for radians or metres", "a range of 20", ASK, "--unit"),
+    "no answer": Rule(
+        "an observed channel of white noise or of three counts while the input moves",
+        "5 standard errors of a correlation at 64 lags",
+        REFUSE,
+    ),
+    "held first": Rule(
+        "a free decay whose link stands still, off its rest, before it is let go",
+        "a twentieth of the way to rest, for longer than it then takes to swing back; those rows are left out",
+        WARN,
+        "--from",
+    ),
+    "stale first": Rule(
+        "first rows that repeat one value until the observed channel goes on at full speed",
+        "1.5 times the sharpest corner anywhere else, up to 12 rows; they are left out",
+        WARN,
+        "--from",
+    ),
+    "backwards": Rule("times that go back", "any", REFUSE, "--rate"),
+    "bursts": Rule("times that repeat or come in bursts", "gaps of 3 mean steps, 4 of them; any repeat", ASK, "--rate"),
+    "time unit": Rule(
+        "milliseconds or finer where seconds are wanted",
+        "a step of 0.05 s, where the record lasts half a second in either unit",
+        ASK,
+        "--unit",
+    ),
 }
 """By kind; the kinds are those of `Finding.kind` and what `--accept` takes."""
 
@@ -58,6 +134,7 @@ def silenced(kind: str, channel: str, options: ReadOptions, units_stated: frozen
         "--rate": options.rate is not None,
         "--unit": channel in units_stated,
         "--from": options.start is not None,
+        "--columns": channel in options.columns,
     }[flag]
 
 

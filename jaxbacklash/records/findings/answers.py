@@ -1,0 +1,110 @@
+"""Whether and from when on the observed channel answers: nothing but noise, a link held at first, stale first rows."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from jaxbacklash.records.finding import REFUSE, WARN, Finding
+
+from .local import SURPRISE_OF_NOISE, level, quantum, surprise
+
+LEVELS = 3
+"""Values up to which a channel is below its own resolution."""
+LAGS = 64
+"""Lags over which a channel without an answer is white."""
+WHITE = 5.0
+"""Standard errors of a correlation of white noise that its largest stays under; one of 64 exceeds 4 in one record of 250."""
+HELD = 32
+"""Rows at the beginning from which on a standstill is spoken of."""
+LET_GO = 0.05
+"""Share of the way from where a link is held to its rest beyond which it is let go."""
+FAR = 40.0
+"""Times the noise that it is held off its rest at least."""
+CORNER = 1.5
+"""Times the sharpest corner anywhere else that the end of stale first rows is at least: they end at full speed in one sample."""
+FIRST = 12
+"""First rows that may be stale: what a buffer or a delay fills."""
+
+
+def answers(t: np.ndarray, channels: Mapping[str, np.ndarray]) -> list[Finding]:
+    """What the observed channel (z, y or T) lacks."""
+    name = next((one for one in ("z", "y", "T") if one in channels), None)
+    if name is None:
+        return []
+    values = channels[name]
+    drive = next((one for one in ("x", "F") if one in channels), None)
+    found = _nothing(values, name, drive)
+    if found:
+        return found
+    if drive is None:
+        return _held_first(t, values, name)
+    return _stale_first(values, name) if name != "T" else []
+
+
+def _nothing(values: np.ndarray, name: str, drive: str | None) -> list[Finding]:
+    """A channel of noise alone, or of two or three counts."""
+    span = values.max() - values.min()
+    if span == 0.0:
+        return []  # `checks.moving` says so
+    moved = f" while {drive} moves" if drive else ""
+    count = quantum(values)
+    if span < (LEVELS - 0.5) * count:
+        what = f"takes {round(span / count) + 1} values only{moved}: its answer is below its resolution of {count:.3g}"
+        return [Finding("no answer", REFUSE, name, what)]
+    some = values[:65536] - np.mean(values[:65536])
+    power = float(np.einsum("i,i", some, some))
+    if power == 0.0:
+        return []
+    for lag in range(1, min(LAGS, some.size // 4)):
+        # Not by BLAS, whose threads take longer to begin than this takes.
+        if abs(float(np.einsum("i,i", some[lag:], some[:-lag]))) > WHITE * power / np.sqrt(some.size):
+            return []
+    what = f"shows white noise of {np.std(values):.3g} and nothing else{moved}: there is no answer to fit"
+    return [Finding("no answer", REFUSE, name, what)]
+
+
+def _held_first(t: np.ndarray, values: np.ndarray, name: str) -> list[Finding]:
+    """A free decay whose link was held at first: it stays off its rest for longer than it then takes to swing back.
+
+    A hand does not hold still to the noise, so what counts as held is a twentieth of the way to rest. A link that is let go in
+    the first row is there for a quarter of the time that it takes to swing back.
+    """
+    rest = float(np.mean(values[-max(HELD, values.size // 10) :]))
+    base = float(np.median(values[:HELD]))
+    way = abs(base - rest)
+    noise = level(surprise(values))
+    left = np.flatnonzero(np.abs(values - base) > LET_GO * way)
+    back = np.flatnonzero((values - rest) * (base - rest) < 0)
+    if way < FAR * noise or not (left.size and back.size) or not HELD <= left[0] < back[0]:
+        return []
+    swing = int(back[0] - left[0])
+    if left[0] < swing:
+        return []
+    # Back from there to where it is still where it was just before; the first rows of the fall may go with them.
+    before = values[max(left[0] - 2 * swing, 0) : left[0] - swing // 2]
+    still = np.abs(values[: left[0]] - np.median(before)) <= 4 * max(float(np.std(before)), noise)
+    release = int(np.flatnonzero(still)[-1]) + 1 if still.any() else int(left[0])
+    what = (
+        f"stays at {base:.4g} up to row {release} ({t[release - 1]:.6g} s) before it swings: the link was held, and "
+        "those rows are left out (--from 0 keeps them)"
+    )
+    return [Finding("held first", WARN, name, what, rows=(0, release - 1), size=float(t[release - 1]), left_out=release)]
+
+
+def _stale_first(values: np.ndarray, name: str) -> list[Finding]:
+    """First rows that repeat one value, until the channel goes on at full speed."""
+    r = np.abs(surprise(values))
+    noise = max(level(r), 0.3 * quantum(values))
+    still = np.abs(values[: FIRST + 2] - values[0]) < 5 * noise
+    if still.all() or values.size < 4 * FIRST:
+        return []
+    last = int(np.argmin(still)) - 1  # the last row that is still
+    if not 1 <= last <= FIRST:
+        return []
+    here, elsewhere = float(np.max(r[max(last - 1, 2) : last + 3])), float(np.max(r[last + 6 :]))
+    if here < CORNER * max(elsewhere, SURPRISE_OF_NOISE * noise):
+        return []
+    what = f"repeats its first value up to row {last + 1} and then goes on at full speed; those rows are stale and left out"
+    return [Finding("stale first", WARN, name, what, rows=tuple(range(last + 1)), left_out=last + 1)]

@@ -1,0 +1,118 @@
+"""How x, y and z go together: what a gear, a turned encoder or a column taken for another leaves in slow motion.
+
+A link on a joint with play and springs follows its base in slow motion, y = x: above the play and far below the resonance. What
+is y = g x there, with g the same over an octave and more and no lag, is no joint but a gear, a turned encoder or another unit.
+Where the record holds no such motion these checks are silent, and only a fit can tell (`causes`).
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+
+import numpy as np
+
+from jaxbacklash.records.finding import ASK, WARN, Finding
+
+CONTRADICTS, ANOTHER = 0.1, 0.7
+"""Share of z's own size by which y - x may miss it before it is said, and from which on the three are no one joint's. A sensor's
+gain or delay stays well below; two unrelated channels come to 1 and more."""
+COHERENT = 0.98
+"""Coherence of a band that counts: y holds hardly anything that x does not explain."""
+IN_STEP = 0.15
+"""Largest lag of such a band [rad]; play that rubs lags by more where it makes y follow at less than half."""
+FLAT = 1.25
+"""Largest ratio of the gains of two octaves: above a resonance they differ by four, near one by more than this."""
+LIKE_ONE = 1.3
+"""Gains between 1/1.3 and 1.3 are how a link follows its base."""
+SAMPLES = 32768
+"""Samples that are enough to see slow motion; from a longer record its first ones."""
+
+
+def relations(channels: Mapping[str, np.ndarray], extras: Mapping[str, np.ndarray]) -> list[Finding]:
+    """Contradictions between x, y and z, and a y or z that follows x as no joint lets it."""
+    x, z, y = channels.get("x"), channels.get("z"), channels.get("y", extras.get("y"))
+    if x is None:
+        return []
+    if z is not None and y is not None and y.dtype.kind == "f" and np.isfinite(y).all():
+        return _three(x, y, z)
+    if y is not None and "y" in channels:
+        return _following(x, y)
+    return _taken_for_y(x, z) if z is not None else []
+
+
+def _three(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> list[Finding]:
+    """With x, y and z all measured, z must be y - x up to an offset."""
+    size = np.std(z)
+    share = float(np.std(y - x - z) / size) if size > 0 else 0.0
+    if share <= CONTRADICTS:
+        return []
+    if share <= ANOTHER:
+        what = f"differs from y - x by {100 * share:.0f} % of its own size; z is used and y is left aside"
+        return [Finding("contradiction", WARN, "z", what, size=share)]
+    if np.std(y - x + z) < CONTRADICTS * size:
+        return [Finding("sign", ASK, "z", "is x - y where y - x is wanted", "--sign z", size=-1.0)]
+    what = (
+        f"is not y - x, which it misses by {100 * share:.0f} % of its own size, so x, y and z do not look like base, link and "
+        "relative motion but like three axes of one sensor (an accelerometer?)"
+    )
+    return [Finding("axes", ASK, "z", what, size=share)]
+
+
+def _following(x: np.ndarray, y: np.ndarray) -> list[Finding]:
+    """A y that follows x in slow motion, but smaller, larger or the other way."""
+    gain = slow_gain(x, y)
+    if gain is None or 1 / LIKE_ONE < gain < LIKE_ONE:
+        return []
+    if -LIKE_ONE < gain < -1 / LIKE_ONE:
+        what = "follows -x in slow motion, as an encoder that is mounted the other way round"
+        return [Finding("sign", ASK, "y", what, "--sign y", size=gain)]
+    ratio = 1.0 / gain
+    whole = round(ratio) if abs(ratio) > 1.5 and abs(ratio / round(ratio) - 1) < 0.1 else ratio
+    what = f"follows x at {gain:.3g} in slow motion, as behind a gear or in another unit"
+    return [Finding("gear", ASK, "y", what, f"--ratio {whole:.3g}", size=gain)]
+
+
+def _taken_for_y(x: np.ndarray, z: np.ndarray) -> list[Finding]:
+    """A z that follows x as the link itself does."""
+    gain = slow_gain(x, z)
+    if gain is None or not 1 / LIKE_ONE < gain < LIKE_ONE:
+        return []
+    what = "follows x one to one in slow motion, as the link's own motion y does and relative motion z = y - x does not"
+    return [Finding("absolute", ASK, "z", what, "--columns y=z", size=gain)]
+
+
+def slow_gain(x: np.ndarray, y: np.ndarray) -> float | None:
+    """The factor by which y follows x in the slowest motion there is; None where it does not simply follow.
+
+    Two neighbouring bands of an octave, from the slowest on that holds a hundredth of x's power, must be coherent, in step, and
+    show the same factor.
+    """
+    x, y = (values[:SAMPLES] - np.mean(values[:SAMPLES]) for values in (x, y))
+    if not (x.any() and y.any()):
+        return None
+    window = np.hanning(x.size)
+    fx, fy = np.fft.rfft(window * x), np.fft.rfft(window * y)
+    power = np.abs(fx) ** 2
+    total = power[2:].sum()
+    edges = [3]
+    while edges[-1] * 2 < fx.size:
+        edges.append(edges[-1] * 2)
+    gains: list[complex] = []
+    for low, high in itertools.pairwise(edges):
+        if power[low:high].sum() < 0.01 * total:
+            if gains:
+                break
+            continue
+        cross, other = np.sum(fy[low:high] * np.conj(fx[low:high])), np.sum(np.abs(fy[low:high]) ** 2)
+        coherence = abs(cross) ** 2 / max(power[low:high].sum() * other, 1e-300)
+        gain = cross / power[low:high].sum()
+        lag = abs(np.angle(gain if gain.real > 0 else -gain))
+        if coherence < COHERENT or lag > IN_STEP:
+            return None
+        gains.append(gain)
+        if len(gains) == 2:
+            break
+    if len(gains) < 2 or not 1 / FLAT < abs(gains[1] / gains[0]) < FLAT or gains[0].real * gains[1].real < 0:
+        return None
+    return float(gains[0].real)
