@@ -58,6 +58,8 @@ class Table:
     left_out : dict of str
         What the file holds beside its columns, by name, as the middle of a sentence ("complex values", "an array of shape
         (3, 3)"): said when somebody asks for it.
+    lines : array of shape (N,) or None
+        Line of the file (from 1) of each row, where rows do not follow each other line by line; None where they do.
     """
 
     columns: tuple[Column, ...]
@@ -67,6 +69,7 @@ class Table:
     rate_hz: float | None = None
     first_line: int | None = None
     left_out: dict[str, str] = dataclasses.field(default_factory=dict)
+    lines: np.ndarray | None = None
 
     @property
     def names(self) -> list[str]:
@@ -84,4 +87,6 @@ class Table:
 
     def place(self, row: int) -> str:
         """How a message names a row (from 0): by its line where the file has lines."""
+        if self.lines is not None:
+            return f"row {row + 1} (line {self.lines[row]})"
         return f"row {row + 1}" if self.first_line is None else f"row {row + 1} (line {self.first_line + row})"

@@ -1,0 +1,148 @@
+"""The first lines of a text table under each separator that it may have: where rows of values begin and how wide they are."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import itertools
+import re
+from typing import TextIO
+
+from ..checks import wrong
+from .cells import MISSING, NUMBER, STAMP, WORD, kinds, split
+from .opening import LONGEST_LINE
+
+WINDOWS = (150, 1200, 10000)
+"""Lines looked at first, and as many more where rows of values do not fill the end of what was looked at."""
+
+COMMENT = re.compile(r'\s*(?:"?(?:#(?!N/A|NV|VALUE|DIV|NUM|REF)|%|//)|!(?=\s|$))')
+SEPARATORS = ("\t", ";", ",", "|", None)
+NAMES = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar", None: "blanks", ":": "colon"}
+
+
+@dataclasses.dataclass(frozen=True)
+class Line:
+    """One line of the head: its number in the file (from 1), its text, and whether it is blank or a comment."""
+
+    number: int
+    text: str
+    comment: bool
+
+    @property
+    def blank(self) -> bool:
+        """Whether nothing stands in the line."""
+        return not self.text.strip()
+
+
+@dataclasses.dataclass(frozen=True)
+class Run:
+    """Lines of equal make, one below the other.
+
+    ``first`` and ``last`` are indices of lines in the head, ``width`` the cells of each, ``kinds`` what its cells are (a letter
+    each, see `cells`), ``values`` how many cells of the run are numbers or stamps.
+    """
+
+    separator: str | None
+    first: int
+    last: int
+    kinds: str
+    values: int
+
+    @property
+    def width(self) -> int:
+        """Cells in a line."""
+        return len(self.kinds)
+
+    @property
+    def score(self) -> float:
+        """How much it looks like a table: cells that are values, times the square of the share that they are."""
+        filled = sum(kind != MISSING for kind in self.kinds)
+        share = sum(kind in NUMBER + STAMP for kind in self.kinds) / max(filled, 1)
+        return self.values * share**2
+
+
+def read_lines(file: TextIO, first: int, count: int, where: str) -> list[Line]:
+    """Up to ``count`` lines; refuses one that is no line of a table, and a NUL byte."""
+    lines = []
+    for number in range(first, first + count):
+        text = file.readline(LONGEST_LINE + 1)
+        if not text:
+            break
+        if len(text) > LONGEST_LINE:
+            wanted = "one line a sample, with a line end behind each"
+            raise wrong(f"{where} line {number}", f"a line of more than {LONGEST_LINE} characters", wanted)
+        lines.append(Line(number, text, COMMENT.match(text) is not None))
+    return lines
+
+
+class Head:
+    """The first lines of a file, cut and judged as far as anybody asks."""
+
+    def __init__(self, lines: list[Line]):
+        self.lines = lines
+        self.cells = functools.cache(lambda index, separator: split(self.lines[index].text, separator))
+        self.kinds = functools.cache(lambda index, separator: kinds(self.cells(index, separator)))
+
+    def passed(self, index: int, separator: str | None) -> bool:
+        """Whether a line holds no cells: blank, a comment, or the ";" that begins one in robot controllers."""
+        line = self.lines[index]
+        return line.blank or line.comment or (separator != ";" and line.text.lstrip().startswith(";"))
+
+    def runs(self, separator: str | None) -> list[Run]:
+        """All runs of lines with values, in order."""
+        runs: list[Run] = []
+        first = last = values = 0
+        form = ""
+        for index in range(len(self.lines)):
+            if self.passed(index, separator):
+                continue
+            kinds = self.kinds(index, separator)
+            valued = kinds.count(NUMBER) + kinds.count(STAMP)
+            joined = _joined(form, kinds) if form and valued else None
+            if joined is None:
+                if form:
+                    runs.append(Run(separator, first, last, form, values))
+                first, values, form = index, 0, kinds if valued else ""
+            else:
+                form = joined
+            last = index
+            values += valued
+        if form:
+            runs.append(Run(separator, first, last, form, values))
+        return runs
+
+    def best(self, separators: tuple[str | None, ...]) -> Run | None:
+        """The run that looks most like a table, and of equal ones that of the separator named first."""
+        present = [mark for mark in separators if mark is None or any(mark in line.text for line in self.lines)]
+        found = [max(runs, key=lambda run: run.score) for mark in present if (runs := self.runs(mark))]
+        return max(found, key=lambda run: (round(run.score, 6), self.fits_above(run)), default=None) if found else None
+
+    def fits_above(self, run: Run) -> bool:
+        """Whether the line above a run has as many cells, none of them a value."""
+        above = next((i for i in reversed(range(run.first)) if not self.passed(i, run.separator)), None)
+        if above is None:
+            return False
+        kinds = self.kinds(above, run.separator).rstrip(MISSING)
+        return len(kinds) == len(run.kinds.rstrip(MISSING)) and set(kinds) <= {WORD, MISSING}
+
+
+def _joined(form: str, kinds: str) -> str | None:
+    """What two lines of one table are together; None where they cannot be of one."""
+    if form == kinds:
+        return form
+    if len(form) != len(kinds):
+        # A separator behind the last value may be there or not.
+        short, long = sorted((form, kinds), key=len)
+        if long[len(short) :].strip(MISSING):
+            return None
+    both = []
+    for one, other in itertools.zip_longest(form, kinds, fillvalue=MISSING):
+        if one == other or other == MISSING:
+            both.append(one)
+        elif one == MISSING:
+            both.append(other)
+        elif WORD not in (one, other):
+            both.append(NUMBER)
+        else:
+            return None
+    return "".join(both)

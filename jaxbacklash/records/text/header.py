@@ -1,0 +1,238 @@
+"""Names and units of the columns of a text table: rows of names, of units and of groups above the first line of values."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+
+from ..checks import listed, wrong
+from ..header_units import is_unit, split_unit
+from .cells import MISSING, NUMBER, STAMP, WORD, kind, number_and_unit, split, spread
+from .head import COMMENT, SEPARATORS, Head, Run
+
+MARKER = re.compile(
+    r"\W*(?:end[ _]?of[ _]?header|(?:begin[ _]|start[ _]?(?:of[ _])?)?(?:data|values|samples|measurements?)|header|table)\W*",
+    re.IGNORECASE,
+)
+"""Lines such as "[Data]" that stand between names and values."""
+
+COMMENTS_SEARCHED = 5
+"""How many lines above the values are searched for names that stand in a comment."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Names:
+    """Names and units of the columns.
+
+    ``first`` is the index in the head of the uppermost line that belongs to them and ``line`` the line (from 1) of the names,
+    both None where there are none; ``texts`` the lines themselves; ``rate_hz`` what a header of a scope states besides.
+    """
+
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    first: int | None = None
+    line: int | None = None
+    texts: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+    rate_hz: float | None = None
+
+
+def find_names(head: Head, run: Run, where: str) -> Names:
+    """The names and units above a run of values.
+
+    Raises
+    ------
+    BadInput
+        Where there are more or fewer names than values.
+    """
+    rows = _rows_above(head, run)
+    if not rows:
+        rows = _commented(head, run)
+    if not rows:
+        return _unnamed(head, run, where)
+    width = run.width
+    units = [""] * width
+    notes: list[str] = []
+    used = [rows[0]]
+    rate = None
+    index, cells = rows[0]
+    if len(rows) > 1 and _all_units(cells, width):
+        units, place, rate = [_bare(cell) for cell in spread(cells, width)], "under", _increment(rows[1][1], cells, width)
+        index, cells = rows[1]
+        used.append(rows[1])
+    elif len(rows) > 1 and _all_units(rows[1][1], width) and not _all_units(cells, width):
+        units, place = [_bare(cell) for cell in spread(rows[1][1], width)], "above"
+        used.append(rows[1])
+    if len(used) > 1:
+        notes.append(f"the row of units {place} the header ({listed(each or '-' for each in units)}) is used")
+    cells = _fitted(cells, head, index, run, where)
+    width = len(cells)
+    following = [each for each in rows if each[0] < min(row for row, _ in used)]
+    if len(set(filter(None, cells))) < len([cell for cell in cells if cell]) and following and _groups(following[0][1], width):
+        group = _filled(spread(following[0][1], width))
+        cells = [f"{above}/{name}" if above else name for above, name in zip(group, cells, strict=True)]
+        notes.append(f"the row above the header names groups, so columns are called {cells[0]} and so on")
+        used.append(following[0])
+    names = tuple(name or f"column {place}" for place, name in enumerate(cells, 1))
+    stated = tuple(unit or split_unit(name)[1] for unit, name in zip([*units, *[""] * width], names, strict=False))
+    first = min(row for row, _ in used)
+    texts = tuple(head.lines[row].text.strip() for row, _ in used)
+    return Names(names, stated, first, head.lines[index].number, texts, tuple(notes), rate)
+
+
+def _rows_above(head: Head, run: Run) -> list[tuple[int, list[str]]]:
+    """Up to three rows of words right above the values, the nearest first; (index of the line, cells)."""
+    rows: list[tuple[int, list[str]]] = []
+    for index in reversed(range(run.first)):
+        line = head.lines[index]
+        if head.passed(index, run.separator) or MARKER.fullmatch(line.text.strip()):
+            if rows and line.blank:
+                break
+            continue
+        cells = _row_of_words(line.text, run)
+        if cells is None:
+            break
+        rows.append((index, cells))
+        if len(rows) == 3:
+            break
+    return rows
+
+
+def _row_of_words(text: str, run: Run) -> list[str] | None:
+    """The cells of a line that may hold names or units; None where it holds numbers."""
+    cells = split(text, run.separator)
+    words = cells[: run.width]
+    if any(kind(cell) in (NUMBER, STAMP) and not is_unit(cell) for cell in words) or not any(words):
+        return None
+    return cells
+
+
+def _commented(head: Head, run: Run) -> list[tuple[int, list[str]]]:
+    """Rows of names and units that stand in comments, as numpy.savetxt and MATLAB write them; the nearest first."""
+    rows: list[tuple[int, list[str]]] = []
+    for index in reversed(range(max(0, run.first - COMMENTS_SEARCHED), run.first)):
+        text = head.lines[index].text
+        if not (head.lines[index].comment or text.lstrip().startswith(";")):
+            continue
+        bare = re.sub(r"^\s*\"?(?:#+|%+|//+|;+|!+)", "", text.rstrip("\r\n"))
+        for separator in (run.separator, *SEPARATORS):
+            cells = split(bare.strip(" ") if separator else bare, separator)
+            fits = len(cells) == run.width or (len(spread(cells, run.width)) == run.width == len(cells) + 1 and not separator)
+            if fits and all(kind(cell) in (WORD, MISSING) for cell in cells) and any(cells):
+                rows.append((index, cells))
+                break
+    # Of several comments of this width only those that touch each other belong together.
+    together = [each for place, each in enumerate(rows) if rows[0][0] - each[0] == place]
+    return together if len(together) < 2 or _all_units(together[0][1], run.width) else together[:1]
+
+
+def _all_units(cells: list[str], width: int) -> bool:
+    """Whether a row holds units and nothing else: "s,deg,deg", "[s];[deg]", "(ms)", with "-" or nothing for none."""
+    named = [
+        cell for cell in cells[:width] if kind(cell) != MISSING and cell not in ("1", "[-]", "(-)", "[]", "()", "[1]", "(1)")
+    ]
+    return bool(named) and all(_is_bracketed(cell) or is_unit(cell) or cell.lower() == "sequence" for cell in named)
+
+
+def _is_bracketed(cell: str) -> bool:
+    return re.fullmatch(r"\[[^\[\]]{1,20}\]|\([^()]{1,20}\)", cell) is not None
+
+
+def _bare(cell: str) -> str:
+    """A unit without its brackets; nothing for none."""
+    cell = cell.strip("[]() ")
+    return "" if kind(cell) == MISSING or cell == "1" or cell.lower() == "sequence" else cell
+
+
+def _increment(names: list[str], values: list[str], width: int) -> float | None:
+    """The rate [Hz] that a scope writes behind the names: X,CH1,Start,Increment over Sequence,Volt,-0.06,0.001."""
+    for name, value in zip(names[width:], values[width:], strict=False):
+        if re.fullmatch(r"(?:x\s*)?incr?(?:ement)?|delta\s*[xt]?|dt", name, re.IGNORECASE):
+            try:
+                step = float(value)
+            except ValueError:
+                continue
+            return 1.0 / step if step > 0 else None
+    return None
+
+
+def _fitted(cells: list[str], head: Head, index: int, run: Run, where: str) -> list[str]:
+    """The names, one for each column of values, or a refusal."""
+    width = run.width
+    # Every line may end with a separator, and then the last column is none.
+    filled = len(run.kinds.rstrip(MISSING))
+    while len(cells) > width and (not cells[-1] or cells[-1].lower() == "comment" or _beside(head, index, run)):
+        cells = cells[:-1]
+    if len(cells) == width:
+        while width > filled and not cells[-1]:
+            cells, width = cells[:-1], width - 1
+        return cells
+    if filled <= len(cells) < width:
+        return cells
+    text = (
+        re.sub(r"^\s*\"?(?:#+|%+|//+|;+)\s*", "", head.lines[index].text)
+        if COMMENT.match(head.lines[index].text)
+        else head.lines[index].text
+    )
+    for other in _other_ways(text.strip("\r\n")):
+        if filled <= len(other) <= width:
+            return other
+    # R writes a number in front of each row and no name for it.
+    first = [
+        head.cells(row, run.separator)[0]
+        for row in range(run.first, min(run.last, run.first + 3) + 1)
+        if not head.passed(row, run.separator)
+    ]
+    if (
+        len(cells) == width - 1
+        and first == [str(number) for number in range(int(first[0]), int(first[0]) + len(first))]
+        and int(first[0]) < 2
+    ):
+        return ["", *cells]
+    line = head.lines[run.first].number
+    found = f"{width} value{'s' * (width != 1)}"
+    names = f"{len(cells)} ({listed(cells)})"
+    hint = ""
+    if run.separator == "," and width == 2 * len(cells):
+        hint = "; decimal commas in a file separated by commas need quotes, or semicolons as separators"
+    raise wrong(f"{where} line {line}", found, f"{names}, as many as line {head.lines[index].number} has names{hint}")
+
+
+def _beside(head: Head, index: int, run: Run) -> bool:
+    """Whether what stands behind the names has its values in the next row alone, as scopes write start and increment."""
+    return (
+        index + 1 < run.first
+        and len(head.cells(index + 1, run.separator)) > run.width
+        and _increment(head.cells(index, run.separator), head.cells(index + 1, run.separator), run.width) is not None
+    )
+
+
+def _other_ways(text: str) -> list[list[str]]:
+    """A header cut otherwise than its values: by another separator, by two blanks or more, with units behind a blank."""
+    ways = [split(text, mark) for mark in SEPARATORS if mark and mark in text]
+    ways.append([cell for cell in re.split(r"\t+|\s{2,}", text.strip()) if cell])
+    ways.append(re.sub(r"\s+([\[(][^\])]*[\])])", "\u00a0\\1", text).split(" "))
+    return [[cell.replace("\u00a0", " ").strip() for cell in way if cell.strip()] for way in ways]
+
+
+def _groups(cells: list[str], width: int) -> bool:
+    """Whether a row names groups of columns: words, at least two of them, and no more than there are columns."""
+    words = [cell for cell in cells if cell]
+    return len(words) >= 2 and len(cells) <= width + 1 and not any(kind(cell) in (NUMBER, STAMP) for cell in words)
+
+
+def _filled(cells: list[str]) -> list[str]:
+    """Names of groups, each standing for the empty cells to its right as well."""
+    filled: list[str] = []
+    for cell in cells:
+        filled.append(cell or (filled[-1] if filled else ""))
+    return filled
+
+
+def _unnamed(head: Head, run: Run, where: str) -> Names:
+    """Names by number where the file has none."""
+    width = len(run.kinds.rstrip(MISSING))
+    cells = head.cells(run.first, run.separator)
+    units = tuple((number_and_unit(cell) or ("", ""))[1] for cell in spread(cells, width))
+    note = f"no line of names stands above the values of line {head.lines[run.first].number}; columns go by number"
+    return Names(tuple(f"column {place}" for place in range(1, width + 1)), units, notes=(note,))

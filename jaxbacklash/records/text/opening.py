@@ -1,0 +1,182 @@
+"""The first step of reading a text table: its encoding, and its lines, out of gzip where it is packed."""
+
+from __future__ import annotations
+
+import codecs
+import contextlib
+import dataclasses
+import gzip
+import io
+import itertools
+import shlex
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import BinaryIO
+
+from ..checks import wrong
+
+SNIFFED_BYTES = 65536
+"""The encoding is judged by these first bytes."""
+
+MOST_UNPACKED = 512 * 2**20
+"""A packed file that holds more bytes of text than this is refused: it might have no end. Ten million rows are within it."""
+
+LONGEST_LINE = 2**20
+"""A line of more characters than this is none of a table with one line a sample."""
+
+PACKED = {b"BZh": "bzip2", b"\xfd7zXZ": "xz", b"PK\x03\x04": "zip", b"\x28\xb5\x2f\xfd": "zstd", b"7z\xbc\xaf": "7z"}
+"""First bytes of packed files that are not unpacked here (a workbook is such a zip file)."""
+
+
+class Lines(io.TextIOWrapper):
+    """The lines of a text file; ``bytes`` is what they are made from."""
+
+    bytes: Bytes
+
+
+@dataclasses.dataclass(frozen=True)
+class Source:
+    """A text file and how to read it: its encoding in Python's name, and whether it is packed by gzip."""
+
+    path: Path
+    encoding: str
+    gzip: bool
+
+    @contextlib.contextmanager
+    def lines(self, skip: int = 0) -> Iterator[Lines]:
+        """The lines of the file after the first ``skip``; CR, LF and CR LF end one.
+
+        Raises
+        ------
+        BadInput
+            Where the packed data are damaged, end too soon or hold more than `MOST_UNPACKED` bytes.
+        """
+        with unpacked(self.path, self.gzip) as raw:
+            # A lone half of a character, or a byte that the encoding does not have, must not hinder numbers.
+            file = Lines(io.BufferedReader(raw, SNIFFED_BYTES), encoding=self.encoding, errors="replace")
+            file.bytes = raw
+            for _ in itertools.islice(file, skip):
+                continue
+            yield file
+
+
+class Bytes(io.RawIOBase):
+    """The bytes of a file, unpacked where need be, up to `MOST_UNPACKED` of those; lines are counted as they pass."""
+
+    def __init__(self, file: BinaryIO | gzip.GzipFile | io.FileIO, path: Path, packed: bool):
+        self.file, self.path, self.packed = file, path, packed
+        self.count = self.feeds = self.returns = 0
+        self.tail = b""
+
+    def readable(self) -> bool:
+        """Always: this is what `io.RawIOBase` asks."""
+        return True
+
+    def readinto(self, buffer) -> int:
+        """Fill a buffer; see `io.RawIOBase`. Raises `BadInput` where the file is damaged or too long."""
+        # What a damaged archive raises differs by where the damage is.
+        try:
+            data = self.file.read(len(buffer))
+        except EOFError as why:
+            wanted = "all of it (copy the file again)"
+            raise wrong(str(self.path), "a gzip file that ends in the middle", wanted) from why
+        except (gzip.BadGzipFile, zlib.error) as why:
+            raise wrong(str(self.path), f"a damaged gzip file ({why})", "one that can be unpacked") from why
+        self.count += len(data)
+        if self.packed and self.count > MOST_UNPACKED:
+            found = f"a gzip file of more than {MOST_UNPACKED >> 20} MB of text"
+            raise wrong(str(self.path), found, f"less; unpack it first with gunzip -k {shlex.quote(str(self.path))}")
+        self.feeds += data.count(b"\n")
+        self.returns += data.count(b"\r")
+        self.tail = (self.tail + data if len(data) < 1024 else data)[-4096:]
+        buffer[: len(data)] = data
+        return len(data)
+
+    def last_line(self) -> int:
+        """Number (from 1) of the last line that is not blank, once all is read; blank lines at the end count only far up."""
+        mark = b"\n" if self.feeds else b"\r"
+        below = self.tail[len(self.tail.rstrip(b" \t\r\n\f\v\0\x1a")) :]
+        return (self.feeds or self.returns) + 1 - below.count(mark)
+
+
+@contextlib.contextmanager
+def unpacked(path: Path, packed: bool) -> Iterator[Bytes]:
+    """The bytes of a file, out of gzip where ``packed``."""
+    with gzip.open(path, "rb") if packed else open(path, "rb", buffering=0) as file:
+        yield Bytes(file, path, packed)
+
+
+def open_text(path: Path) -> Source:
+    """Find out how a file is to be read.
+
+    Parameters
+    ----------
+    path : Path
+        An existing file.
+
+    Returns
+    -------
+    Source
+
+    Raises
+    ------
+    BadInput
+        The file is empty, binary, packed by something other than gzip, or damaged.
+    """
+    with open(path, "rb") as file:
+        start = file.read(8)
+    packed = start.startswith(b"\x1f\x8b")
+    name = next((name for mark, name in PACKED.items() if start.startswith(mark)), None)
+    if name == "zip":
+        wanted = "a table (unpack it; an Excel workbook keeps its suffix .xlsx, a NumPy archive .npz)"
+        raise wrong(str(path), "binary data, packed as zip", wanted)
+    if name is not None:
+        raise wrong(str(path), f"binary data, packed by {name}", "text; unpack it first")
+    with unpacked(path, packed) as raw:
+        head = io.BufferedReader(raw, SNIFFED_BYTES).read(SNIFFED_BYTES)
+    return Source(path, encoding_of(head, str(path)), packed)
+
+
+def encoding_of(head: bytes, where: str) -> str:
+    """The encoding that the first bytes of a file show, in Python's name.
+
+    Raises
+    ------
+    BadInput
+        The file is empty, or these are no bytes of text.
+    """
+    if head.startswith((codecs.BOM_UTF32_LE, codecs.BOM_UTF32_BE)):
+        return "utf-32"
+    if head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return "utf-16"
+    if not head.strip(b" \t\r\n\f\v\0"):
+        raise wrong(where, "nothing but NUL bytes" if b"\0" in head else "an empty file", "a header line and numbers")
+    wide = _wide(head)
+    if wide is not None:
+        return wide
+    odd = next((place for place, byte in enumerate(head) if byte < 32 and byte not in b"\t\n\r\f\v\x1a"), None)
+    if odd is not None:
+        before = head[:odd].decode("latin-1")
+        if head[odd] == 0 and before.count("\n") > 2 and before.isascii():
+            found = f"binary data: NUL bytes from line {before.count(chr(10)) + 1} on"
+            raise wrong(where, found, "text throughout (delete them, or copy the file again)")
+        raise wrong(where, "binary data", "text (a .npz or .mat file must keep its suffix)")
+    try:
+        # Not final: the cut may go through a character.
+        codecs.utf_8_decode(head, "strict", False)
+    except UnicodeDecodeError:
+        return "cp1252"
+    return "utf-8-sig"
+
+
+def _wide(head: bytes) -> str | None:
+    """UTF-16 without a byte order mark: a table is digits and blanks, and there every second byte of theirs is 0."""
+    pairs = len(head) // 2
+    if pairs < 2:
+        return None
+    first, second = head[: 2 * pairs : 2], head[1 : 2 * pairs : 2]
+    for high, low, name in ((second, first, "utf-16-le"), (first, second, "utf-16-be")):
+        if high.count(0) > 0.8 * pairs and low.count(0) == 0:
+            return name
+    return None

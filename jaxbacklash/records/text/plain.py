@@ -1,0 +1,82 @@
+"""The fast way to read a text table: NumPy's reader, for tables in which every cell is a number.
+
+It gives up (returns None) at anything else, and `by_cell` reads the file again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+
+from .cells import MISSING, NUMBER, split
+from .layout import Layout
+from .numbers import Cells, _judged
+
+
+def read_plain(layout: Layout, decimal: str | None) -> tuple[np.ndarray, str, np.ndarray | None] | None:
+    """All values of a table of numbers.
+
+    Parameters
+    ----------
+    layout : Layout
+    decimal : str or None
+        The decimal mark, where the user said it.
+
+    Returns
+    -------
+    values : array of shape (N, columns)
+    mark : str
+        The decimal mark.
+    lines : array of shape (N,) or None
+        Line of each row, where they do not follow each other; None where they do.
+
+    None where some cell is no number that NumPy reads, or where marks inside numbers need a closer look.
+    """
+    if layout.width != len(layout.names) or not set(layout.kinds) <= {NUMBER, MISSING}:
+        return None
+    comma = any("," in line for line in layout.sample) and layout.separator != ","
+    if comma and not _is_decimal_comma(layout, decimal):
+        return None
+    if layout.quoted and comma:
+        return None
+    try:
+        _load(_pointed(layout.sample, comma), layout)
+        with layout.source.lines(layout.first_line - 1) as file:
+            values = _load(_pointed(file, comma), layout)
+            consecutive = file.bytes.last_line() == layout.first_line + len(values) - 1
+    except ValueError:
+        return None
+    if values.shape[1] != len(layout.names):
+        return None
+    return values, "," if comma else ".", None if consecutive else _line_numbers(layout, len(values))
+
+
+def _load(lines: Iterable[str], layout: Layout) -> np.ndarray:
+    return np.loadtxt(lines, delimiter=layout.separator, comments="#", ndmin=2, quotechar='"' if layout.quoted else None)
+
+
+def _pointed(lines: Iterable[str], comma: bool) -> Iterable[str]:
+    """Lines with decimal points. A point in a file of decimal commas may mark thousands: it is made unreadable here."""
+    return (line.replace(".", "_").replace(",", ".") for line in lines) if comma else lines
+
+
+def _is_decimal_comma(layout: Layout, decimal: str | None) -> bool:
+    """Whether the first lines prove that the comma is the decimal mark of every column that has one."""
+    rows = [split(line, layout.separator) for line in layout.sample]
+    columns: list[Cells] = [_judged(column) for column in zip(*rows, strict=False)]
+    proved = any("," in column.proof for column in columns) or decimal == ","
+    return proved and decimal != "." and not any("." in column.proof for column in columns)
+
+
+def _line_numbers(layout: Layout, rows: int) -> np.ndarray | None:
+    """Line of each row where comments or blank lines stand between them."""
+
+    def numbered() -> Iterator[int]:
+        with layout.source.lines(layout.first_line - 1) as file:
+            for number, line in enumerate(file, layout.first_line):
+                if line.partition("#")[0].strip():
+                    yield number
+
+    lines = np.fromiter(numbered(), dtype=np.int64)
+    return lines if lines.size == rows else None

@@ -1,0 +1,92 @@
+"""`read_text`: a text table as a `Table`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ..table import Column, Table
+from .by_cell import read_cells
+from .head import NAMES
+from .layout import Layout, find_layout
+from .numbers import read_numbers
+from .opening import open_text
+from .plain import read_plain
+
+ENCODINGS = {"utf-8-sig": "utf-8", "cp1252": "Windows-1252 (Latin-1)", "utf-16-le": "utf-16 (little end first)"}
+ENCODINGS["utf-16-be"] = "utf-16 (big end first)"
+
+
+def read_text(path: Path, skip: int = 0, decimal: str | None = None) -> Table:
+    """The columns of a text table.
+
+    Parameters
+    ----------
+    path : Path
+        An existing file; packed by gzip or not, whatever its suffix.
+    skip : int
+        Lines at the beginning to pass over unseen.
+    decimal : str or None
+        "." or ",": what it means where a comma or a point can be read in two ways. None refuses such a file.
+
+    Returns
+    -------
+    Table
+        Columns in the order of the file, with NaN where a cell holds no number, and text where a column is no column of
+        numbers. `Table.lines` gives the line of each row where rows do not follow each other.
+
+    Raises
+    ------
+    BadInput
+        Naming the line and column that cannot be read, or what is wrong with the file as a whole.
+
+    Examples
+    --------
+    >>> read_text(Path("rec.csv")).names  # doctest: +SKIP
+    ['Time [s]', 'x [deg]', 'z [deg]']
+    """
+    layout = find_layout(open_text(path), skip)
+    units, notes = list(layout.units), list(layout.notes)
+    lines: np.ndarray | None
+    plain = read_plain(layout, decimal)
+    if plain is not None:
+        matrix, mark, lines = plain
+        columns = list(np.ascontiguousarray(matrix.T))
+    else:
+        cells, lines, more = read_cells(layout)
+        numbers = lines
+
+        def place(row: int) -> str:
+            return f"{path} line {numbers[row]}"
+
+        columns, behind, also, mark = read_numbers(cells, layout.names, decimal, place)
+        units = [unit or other for unit, other in zip(units, behind, strict=True)]
+        notes += more + also
+        if np.array_equal(lines, np.arange(layout.first_line, layout.first_line + lines.size)):
+            lines = None
+    return Table(
+        columns=tuple(map(Column, layout.names, columns, units)),
+        format="csv",
+        details=_details(layout, mark, skip),
+        notes=tuple(notes),
+        rate_hz=layout.rate_hz,
+        first_line=layout.first_line,
+        lines=lines,
+    )
+
+
+def _details(layout: Layout, mark: str, skip: int) -> dict[str, str]:
+    """How the file was read, for a person."""
+    details = {"encoding": ENCODINGS.get(layout.source.encoding, layout.source.encoding)}
+    if layout.source.gzip:
+        details["packed"] = "gzip"
+    details["separator"] = NAMES.get(layout.separator, str(layout.separator))
+    details["decimal mark"] = {".": "point", ",": "comma"}[mark]
+    details["header line"] = "none" if layout.header_line is None else str(layout.header_line)
+    details["first line of values"] = str(layout.first_line)
+    if layout.passed:
+        details["lines passed over"] = layout.passed
+    if skip:
+        details["lines skipped"] = str(skip)
+    return details
