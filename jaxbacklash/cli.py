@@ -362,7 +362,7 @@ def main() -> None:
             print(error.format_message(), file=sys.stderr)
             sys.exit(2)
         code = say(*told(error))
-        if isinstance(error, OSError):
+        if isinstance(error, OSError | SystemExit):
             let_go_of_output()
     sys.exit(code if isinstance(code, int) else 0)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import sys
 import time
@@ -15,7 +14,6 @@ from threading import Thread
 from typing import Any
 
 from ..errors import BadInput
-from ..mechanics import AbstractEffect
 from ..model_file import load_model
 from ..records import (
     MeasuredSeries,
@@ -28,6 +26,7 @@ from ..records import (
 )
 from ..system import System
 from ..whole_file import write_whole
+from .laws import load_laws as load_laws
 
 
 @dataclass(frozen=True)
@@ -75,31 +74,6 @@ def check_window(window: float) -> None:
     """Refuse a window length [s] that no score can be quoted for."""
     if not 0.02 <= window <= 10.0:
         raise BadInput(f"--window {window:g}: wanted a length between 0.02 and 10 s")
-
-
-def load_laws(path: Path | None) -> None:
-    """Run a file of the user's own effect classes; from then on the catalogue knows them.
-
-    Raises
-    ------
-    BadInput
-        The file is missing, fails, or defines no effect.
-    """
-    if path is None:
-        return
-    try:
-        spec = importlib.util.spec_from_file_location(path.stem, path)
-        if spec is None or spec.loader is None or not path.is_file():
-            raise BadInput(f"--laws {path}: wanted a Python file with effect classes")
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-    except BadInput:
-        raise
-    except Exception as error:
-        raise BadInput(f"--laws {path}: running it failed with {type(error).__name__}: {error}") from None
-    own = (cls for cls in vars(module).values() if isinstance(cls, type) and cls.__module__ == module.__name__)
-    if not any(issubclass(cls, AbstractEffect) for cls in own):
-        raise BadInput(f"--laws {path}: defines no effect, wanted a subclass of jaxbacklash.AbstractEffect")
 
 
 def names(text: str | None) -> list[str]:

@@ -28,8 +28,8 @@ def told(error: BaseException) -> tuple[str, int]:
         return f"no answer: {error}", 1
     if isinstance(error, KeyboardInterrupt):
         return "stopped", 130
-    if isinstance(error, BrokenPipeError):
-        return "", 1
+    if isinstance(error, BrokenPipeError) or (isinstance(error, SystemExit) and isinstance(error.__context__, BrokenPipeError)):
+        return "", 1  # the parser ends the process by itself where its reader has gone
     if hasattr(error, "format_message"):  # a wrong word on the command line
         return f"error: {' '.join(error.format_message().split())}", 2
     if os.environ.get(DEBUG):

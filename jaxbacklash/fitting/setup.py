@@ -12,7 +12,7 @@ import numpy as np
 from ..compiled import kept_jit
 from ..effects import Contact, Damper, Spring
 from ..errors import BadInput
-from ..mechanics import AbstractEffect, Drive, catalogue
+from ..mechanics import AbstractEffect, Drive, canonical_name, catalogue
 from ..parameters import ravel, specs, values, with_values
 from ..records import Record
 from ..system import System, observe
@@ -146,10 +146,13 @@ def add_effects(system: System, effects: Sequence[AbstractEffect | str]) -> Syst
     Raises
     ------
     BadInput
-        A name that is not in the catalogue.
+        A name that is not in the catalogue, or an effect that the system has already.
     """
     known = catalogue()
     for effect in effects:
+        name = effect if isinstance(effect, str) else canonical_name(effect)
+        if name in system.effects:
+            raise BadInput(f"--effects {name}: the model has this effect already; name it once, here or in the model file")
         if isinstance(effect, str):
             if effect not in known:
                 raise BadInput(f"--effects {effect}: no such effect, wanted some of {', '.join(known)}")
