@@ -9,7 +9,7 @@ import numpy as np
 from jaxbacklash.records.finding import WARN, Finding
 from jaxbacklash.records.options import ReadOptions
 
-from . import answers, held, jumps, limits, quantities, relations, spikes, stamps
+from . import answers, held, jumps, limits, mend, quantities, relations, spikes, stamps
 from .rules import silenced
 
 SHORTEST = 64
@@ -49,18 +49,20 @@ def find(
     channels = {name: values for name, values in channels.items() if values.size >= SHORTEST}
     if not channels:
         return []
-    found = [
-        *quantities.quantities(channels, options),
-        *jumps.wraps(channels),
-        *spikes.spikes(channels),
-        *held.held(channels),
-        *limits.clipped(channels),
-        *answers.answers(t, channels),
-    ]
-    # What has jumped shifts too, and neither follows anything.
-    if not any(one.kind in ("wrap", "sentinel", "spike", "held", "stale") for one in found):
-        found += jumps.shifts(channels)
-    if all(one.action == WARN for one in found):
+    found = quantities.quantities(channels, options)
+    # What one check finds would set off the next: a code stands out, a wrap shifts, and neither follows anything. So a channel is
+    # looked at further once it is mended, and the whole record once no channel waits for an answer.
+    for checks in (jumps.known_wraps, spikes.codes, jumps.wraps, held.held, spikes.spikes):
+        new = _open(
+            checks({name: values for name, values in channels.items() if name not in _waiting(found)}), options, units_stated
+        )
+        channels = mend.after(t, channels, {}, new)[1] if new else channels
+        found += new
+    if not _waiting(found):
+        odd = limits.clipped(channels) or held.held_rows(channels) or jumps.shifts(channels)
+        found += _open(odd, options, units_stated)
+        found += _open(answers.answers(t, channels), options, units_stated)
+    if not _waiting(found):
         found += relations.relations(channels, extras)
     return _open(found, options, units_stated)
 
@@ -80,6 +82,11 @@ def find_in_times(t: np.ndarray, options: ReadOptions, *, units_stated: frozense
         About the channel "t".
     """
     return _open(stamps.stamps(t), options, units_stated)
+
+
+def _waiting(found: list[Finding]) -> set[str]:
+    """The channels about which something is refused or asked."""
+    return {one.channel for one in found if one.action != WARN}
 
 
 def _open(found: list[Finding], options: ReadOptions, units_stated: frozenset[str]) -> list[Finding]:

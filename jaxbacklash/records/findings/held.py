@@ -8,7 +8,7 @@ import numpy as np
 
 from jaxbacklash.records.finding import ASK, WARN, Finding
 
-from .local import listed_rows, quantum, runs
+from .local import level, listed_rows, quantum, runs, surprise
 
 HELD_ROWS = 4
 """Equal rows from which on they count as filled with the last one, where they end in a jump."""
@@ -17,19 +17,21 @@ REGULAR = 0.8
 LIVELY = 6.0
 """Counts by which the samples around a stale one differ at least: an encoder that moves by less may well repeat itself."""
 FEW_STALE = 3
-"""Stale samples by which counting alone could explain twice as many as there are; fewer are not spoken of."""
+"""Stale samples that are not spoken of: fewer do no harm that can be told from chance."""
+BY_CHANCE = 3.0
+"""Times the repeats that counting brings by chance that there are at least."""
+MOST = 0.2
+"""Share of the samples up to which they are called stale; beyond it the channel is coarse or at rest."""
 
 
 def held(channels: Mapping[str, np.ndarray]) -> list[Finding]:
     """Channels that hold their value."""
-    rows = _held_rows(list(channels.values()))
-    if rows:
-        return rows
+    steady = {name: refreshed_every(values) for name, values in channels.items()}
     found = []
     for name, values in channels.items():
-        every = refreshed_every(values)
+        every = steady[name]
         if every > 1:
-            what = f"has a new value every {every} rows only and holds it in between, rows 1 to {every} first"
+            what = f"has a new value every {every} rows only and holds it in between"
             found.append(Finding("held", ASK, name, what, f"--despike {name}", size=float(every)))
             continue
         stale = stale_rows(values)
@@ -66,40 +68,40 @@ def refreshed_every(values: np.ndarray) -> int:
 
 
 def stale_rows(values: np.ndarray) -> np.ndarray:
-    """Rows (from 0) that repeat the value before though the channel moves by many counts there."""
+    """Rows (from 0) that repeat the value before though the channel is too finely read, or moves too fast, for that by chance."""
     none = np.zeros(0, dtype=int)
-    still = np.flatnonzero(np.diff(values) == 0.0) + 1
-    if not still.size or still.size > 0.9 * values.size:
+    steps = np.diff(values)
+    still = np.flatnonzero(steps == 0.0) + 1
+    if still.size < FEW_STALE or still.size > MOST * values.size or refreshed_every(values) > 1:
         return none
-    count = quantum(values)
-    every = refreshed_every(values)
-    if every > 1:
+    count, noise = quantum(values), level(surprise(values))
+    # Noise alone lands twice on one count in this share of the rows.
+    if still.size > FEW_STALE + BY_CHANCE * values.size * count / max(2 * np.sqrt(np.pi) * noise, 1e-300):
         return still
-    if still.size > 0.2 * values.size:
-        return none
-    inside = still[(still >= 3) & (still < values.size - 2)]
-    first, length = runs(np.isin(np.arange(values.size), inside))
-    first, length = first[length <= HELD_ROWS], length[length <= HELD_ROWS]
-    last = np.minimum(first + length, values.size - 2)
-    # The motion before and after goes the same way, by many counts a sample, and makes good what was missed.
-    before, after = values[first - 1] - values[first - 3], values[last + 1] - values[last]
-    catch_up = np.abs(values[last] - values[first - 1])
-    usual = np.minimum(np.abs(before) / 2, np.abs(after))
-    moving = (np.sign(before) == np.sign(after)) & (np.sign(values[last] - values[first - 1]) == np.sign(after))
-    lively = moving & (usual > LIVELY * count) & (catch_up > 1.5 * usual)
-    first, length = first[lively], length[lively]
-    rows = np.concatenate([none, *(np.arange(a, a + n) for a, n in zip(first, length, strict=True))])
-    by_chance = _repeats_by_chance(values, count)
-    return rows if rows.size >= FEW_STALE + 2 * by_chance else none
+    rows = _overtaken(values, steps == 0.0, count)
+    # Samples that move by a single count amid fast motion are as rare as those that do not move at all, but for stale ones.
+    expected = _overtaken(values, np.abs(np.abs(steps) - count) < 0.5 * count, count).size / 2
+    return rows if rows.size >= FEW_STALE + BY_CHANCE * expected else none
 
 
-def _repeats_by_chance(values: np.ndarray, count: float) -> float:
-    """Repeats that rounding makes among lively steps: about half as many as there are steps of just so many counts."""
-    return float(np.count_nonzero(np.abs(np.abs(np.diff(values, 1)) - LIVELY * count) < 0.5 * count)) / 2.0
+def _overtaken(values: np.ndarray, small: np.ndarray, count: float) -> np.ndarray:
+    """Rows after small steps (N - 1,) around which the motion goes on one way by many counts a sample, and catches up."""
+    first, length = runs(small)
+    ok = (first >= 2) & (first + length < values.size - 3) & (length <= HELD_ROWS)
+    first, length = first[ok], length[ok]
+    last = first + length
+    before, after = (values[first] - values[first - 2]) / 2, (values[last + 3] - values[last + 1]) / 2
+    here = values[last + 1] - values[last]
+    usual = np.minimum(np.abs(before), np.abs(after))
+    onward = (np.sign(before) == np.sign(after)) & (np.sign(here) == np.sign(after))
+    found = onward & (usual > LIVELY * count) & (np.abs(here) > 1.5 * usual)
+    rows = [np.arange(a + 1, a + n + 1) for a, n in zip(first[found], length[found], strict=True)]
+    return np.concatenate([np.zeros(0, dtype=int), *rows])
 
 
-def _held_rows(columns: list[np.ndarray]) -> list[Finding]:
+def held_rows(channels: Mapping[str, np.ndarray]) -> list[Finding]:
     """Samples lost and filled with the last one: all channels stand still together, then jump by more than one step."""
+    columns = list(channels.values())
     still = np.all([np.diff(values) == 0 for values in columns], axis=0)
     ends = np.flatnonzero(still[:-1] & ~still[1:])
     if not ends.size:

@@ -22,15 +22,24 @@ AGAIN = 3
 """Jumps of one size, which is the whole range of the channel, that make it a turn though it is no known one."""
 SHIFT = 20.0
 """Times the noise and the liveliness of the motion around it that a lasting shift is at least."""
+ROWS_LOST = 3.0
+"""Steps of the motion around it that a shift is at least."""
+LIVELY = 5.0
+"""Times its noise by which another channel moves in a sample, where it is to tell lost counts from lost rows."""
 SHIFTS = 5
 """More shifts than this are how the thing moves: a stepper, a base moved by a staircase."""
 
 
-def wraps(channels: Mapping[str, np.ndarray]) -> list[Finding]:
-    """Jumps by a full turn, in x, y and z."""
+def known_wraps(channels: Mapping[str, np.ndarray]) -> list[Finding]:
+    """Jumps by a turn that is known by its size, in x, y and z."""
+    return wraps(channels, known=True)
+
+
+def wraps(channels: Mapping[str, np.ndarray], known: bool = False) -> list[Finding]:
+    """Jumps by any turn, or by those ``known``, in x, y and z."""
     found = []
     for name in POSITIONS:
-        if name in channels and (jumped := turn_of(channels[name])):
+        if name in channels and (jumped := turn_of(channels[name], known)):
             turn, rows = jumped
             called = TURNS.get(turn, f"{turn:.6g}")
             more = f" and {rows.size - 1} more" if rows.size > 1 else ""
@@ -39,12 +48,12 @@ def wraps(channels: Mapping[str, np.ndarray]) -> list[Finding]:
     return found
 
 
-def turn_of(values: np.ndarray) -> tuple[float, np.ndarray] | None:
+def turn_of(values: np.ndarray, known: bool = False) -> tuple[float, np.ndarray] | None:
     """The turn by which a position jumps, in its own unit, and the rows before the jumps; None where it does not."""
     steps = np.diff(values)
     span = values.max() - values.min()
     rows = np.flatnonzero(np.abs(steps) > 0.4 * span)
-    if not rows.size or rows.size > steps.size / 10:
+    if not rows.size or rows.size > steps.size / 2:
         return None
     jumping = np.zeros(steps.size, dtype=bool)
     jumping[rows] = True
@@ -61,6 +70,8 @@ def turn_of(values: np.ndarray) -> tuple[float, np.ndarray] | None:
         fits = clear & (np.abs(sizes - turn) < MATCH * turn + np.abs(after - before))
         if fits.any():
             return turn, rows[fits]
+    if known or rows.size > steps.size / 10:
+        return None
     # Counts in some unit, or turns: the jump is as large as the range, since one ends where the other begins.
     clear = (sizes > UNKNOWN * beside) & (sizes > 0.97 * span)
     turn = float(np.median(sizes[clear])) if clear.any() else 0.0
@@ -89,8 +100,27 @@ def shifts_of(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     left = np.sqrt(np.mean((seen - sizes[:, None] * pattern) ** 2, axis=1))
     usual_here = np.maximum(around(np.abs(r), rows), floor)
     clear = (np.abs(sizes) > SHIFT * usual_here) & (left < 1.8 * usual_here + 0.02 * np.abs(sizes))
+    # Two samples held one after another look like a shift, but they repeat a value.
+    steps = np.diff(values[rows[:, None] + np.arange(-1, 3)], axis=1)
+    clear &= np.all(steps != 0.0, axis=1)
     rows, sizes = rows[clear], sizes[clear]
     return (rows, sizes) if rows.size <= SHIFTS else none
+
+
+def _not_lost_rows(channels: Mapping[str, np.ndarray], name: str, row: int, size: float) -> bool:
+    """Whether a shift is none that a few rows make which were not written: too large, or another channel moves and has it not."""
+    steps = np.abs(np.diff(channels[name][row - 1 : row + 3]))
+    moves = max(steps[0], steps[2])
+    if abs(size) > ROWS_LOST * moves:
+        return True
+    if abs(size) < moves:  # a sample that was taken late shifts nothing for good, but may look so for the rows around it
+        return False
+    for other, values in channels.items():
+        mine = values[row - 2 : row + 5]
+        usual = abs(float(mine[-1] - mine[0])) / 6
+        if other != name and usual > LIVELY * level(surprise(values)) and abs(mine[3] - mine[2]) < 1.2 * usual:
+            return True
+    return False
 
 
 def shifts(channels: Mapping[str, np.ndarray]) -> list[Finding]:
@@ -101,6 +131,8 @@ def shifts(channels: Mapping[str, np.ndarray]) -> list[Finding]:
         # A base that really jumps takes y along, or z the other way.
         others = [row for other, (those, _) in every.items() if other != name for row in those]
         alone = ~np.isin(rows, others)
+        sure = [_not_lost_rows(channels, name, int(row), size) for row, size in zip(rows, sizes, strict=True)]
+        alone &= np.array(sure, dtype=bool)
         if not alone.any():
             continue
         rows, sizes = rows[alone], sizes[alone]

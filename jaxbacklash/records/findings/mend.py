@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from jaxbacklash.records.finding import Finding
+from jaxbacklash.records.options import ReadOptions
 
 from . import held, jumps, spikes
 from .local import bridge
@@ -50,6 +51,54 @@ def despiked(values: np.ndarray) -> np.ndarray:
     """A channel (N,) whose samples that were never measured (`spikes.bad_rows`, `held.stale_rows`) are bridged by the others."""
     rows = np.union1d(spikes.bad_rows(values), held.stale_rows(values))
     return bridge(values, rows) if rows.size else values
+
+
+def fresh(values: np.ndarray) -> slice:
+    """The rows at which a channel (N,) that is refreshed every k-th row has a new value; all rows where k is 1."""
+    every = held.refreshed_every(values)
+    if every == 1:
+        return slice(None)
+    changes = np.flatnonzero(np.diff(values)) + 1
+    return slice(int(np.bincount(changes % every).argmax()), None, every)
+
+
+def before(
+    t: np.ndarray, channels: dict[str, np.ndarray], extras: dict[str, np.ndarray], options: ReadOptions
+) -> tuple[np.ndarray, dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """A record's columns with all that the user asked to be mended: sign, ratio, unwrap, despike.
+
+    Parameters
+    ----------
+    t : array of shape (N,)
+    channels, extras : dict of arrays of shape (N,)
+        The channels finite and in SI.
+    options : ReadOptions
+        Its `sign`, `ratio`, `unwrap` and `despike`.
+
+    Returns
+    -------
+    t, channels, extras
+        Of shape (M,): where a channel of `despike` has a new value every k-th row only, those rows are kept, M = N / k. What stands
+        between them would bring noise that is not independent from sample to sample, and make every interval too narrow.
+    """
+    mended = dict(channels)
+    for name, values in channels.items():
+        if name in options.sign:
+            values = -values
+        if name == "x" and options.ratio is not None:
+            values = values / options.ratio
+        if name in options.unwrap:
+            values = unshift(unwrap(values))
+        if name in options.despike and held.refreshed_every(values) == 1:
+            values = despiked(values)
+        mended[name] = values
+    for name in sorted(options.despike & mended.keys()):
+        rows = fresh(mended[name])
+        if rows != slice(None):
+            t, extras = t[rows], {each: values[rows] for each, values in extras.items()}
+            mended = {each: values[rows] for each, values in mended.items()}
+            mended[name] = despiked(mended[name])
+    return t, mended, extras
 
 
 def after(

@@ -25,6 +25,10 @@ FLAT = 1.25
 """Largest ratio of the gains of two octaves: above a resonance they differ by four, near one by more than this."""
 LIKE_ONE = 1.3
 """Gains between 1/1.3 and 1.3 are how a link follows its base."""
+GOES_WITH, AGAINST = 0.75, 0.4
+"""Coherence from which on, and lag from -x [rad] up to which, z goes against x; play in the joint keeps it from more."""
+GROWS = (1.5, 8.0)
+"""Growth of z over an octave below the resonance: four without play."""
 SAMPLES = 32768
 """Samples that are enough to see slow motion; from a longer record its first ones."""
 
@@ -38,7 +42,7 @@ def relations(channels: Mapping[str, np.ndarray], extras: Mapping[str, np.ndarra
         return _three(x, y, z)
     if y is not None and "y" in channels:
         return _following(x, y)
-    return _taken_for_y(x, z) if z is not None else []
+    return _taken_for_y(x, z) or _turned(x, z) if z is not None else []
 
 
 def _three(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> list[Finding]:
@@ -82,37 +86,54 @@ def _taken_for_y(x: np.ndarray, z: np.ndarray) -> list[Finding]:
     return [Finding("absolute", ASK, "z", what, "--columns y=z", size=gain)]
 
 
+def _turned(x: np.ndarray, z: np.ndarray) -> list[Finding]:
+    """A z that grows against x with the frequency.
+
+    Below the resonance z = y - x goes with x and grows as the square of the frequency. Above it, or where the link floats in its
+    play, it goes against x but falls towards -x.
+    """
+    bands = [(low, gain) for low, coherence, gain in _gains(x, z) if coherence > GOES_WITH and abs(np.angle(-gain)) < AGAINST]
+    for (low, gain), (next_low, next_gain) in itertools.pairwise(bands):
+        grows = abs(next_gain / gain)
+        if next_low == 2 * low and GROWS[0] < grows < GROWS[1] and abs(next_gain) < 0.8:
+            what = "grows against x with the frequency, as x - y does and y - x does not"
+            return [Finding("sign", ASK, "z", what, "--sign z", size=-1.0)]
+    return []
+
+
 def slow_gain(x: np.ndarray, y: np.ndarray) -> float | None:
     """The factor by which y follows x in the slowest motion there is; None where it does not simply follow.
 
     Two neighbouring bands of an octave, from the slowest on that holds a hundredth of x's power, must be coherent, in step, and
     show the same factor.
     """
-    x, y = (values[:SAMPLES] - np.mean(values[:SAMPLES]) for values in (x, y))
-    if not (x.any() and y.any()):
+    bands = _gains(x, y)[:2]
+    if len(bands) < 2 or bands[1][0] != 2 * bands[0][0]:
         return None
-    window = np.hanning(x.size)
-    fx, fy = np.fft.rfft(window * x), np.fft.rfft(window * y)
-    power = np.abs(fx) ** 2
-    total = power[2:].sum()
-    edges = [3]
-    while edges[-1] * 2 < fx.size:
-        edges.append(edges[-1] * 2)
-    gains: list[complex] = []
-    for low, high in itertools.pairwise(edges):
-        if power[low:high].sum() < 0.01 * total:
-            if gains:
-                break
-            continue
-        cross, other = np.sum(fy[low:high] * np.conj(fx[low:high])), np.sum(np.abs(fy[low:high]) ** 2)
-        coherence = abs(cross) ** 2 / max(power[low:high].sum() * other, 1e-300)
-        gain = cross / power[low:high].sum()
+    for _, coherence, gain in bands:
         lag = abs(np.angle(gain if gain.real > 0 else -gain))
         if coherence < COHERENT or lag > IN_STEP:
             return None
-        gains.append(gain)
-        if len(gains) == 2:
-            break
-    if len(gains) < 2 or not 1 / FLAT < abs(gains[1] / gains[0]) < FLAT or gains[0].real * gains[1].real < 0:
+    slow, next_ = bands[0][2], bands[1][2]
+    if not 1 / FLAT < abs(next_ / slow) < FLAT or slow.real * next_.real < 0:
         return None
-    return float(gains[0].real)
+    return float(slow.real)
+
+
+def _gains(x: np.ndarray, y: np.ndarray) -> list[tuple[int, float, complex]]:
+    """First line, coherence and gain from x to y of every octave that holds a hundredth of x's power."""
+    x, y = (values[:SAMPLES] - np.mean(values[:SAMPLES]) for values in (x, y))
+    window = np.hanning(x.size)
+    fx, fy = np.fft.rfft(window * x), np.fft.rfft(window * y)
+    power, other = np.abs(fx) ** 2, np.abs(fy) ** 2
+    least = 0.01 * float(np.sum(power[2:]))
+    found = []
+    low = 3  # the lines below hold what the window makes of a mean and a trend
+    while 2 * low < fx.size:
+        band = slice(low, 2 * low)
+        mine, its = float(np.sum(power[band])), float(np.sum(other[band]))
+        if mine > least and its > 0.0:
+            cross = complex(np.sum(fy[band] * np.conj(fx[band])))
+            found.append((low, abs(cross) ** 2 / (mine * its), cross / mine))
+        low *= 2
+    return found

@@ -26,39 +26,46 @@ MOST = 0.05
 """Share of the samples beyond which they are no exceptions: how the channel moves."""
 
 
-def spikes(channels: Mapping[str, np.ndarray]) -> list[Finding]:
-    """Codes and spikes, in every channel."""
-    found = []
-    for name, values in channels.items():
-        for kind, rows, what in ((*_codes(values),), ("spike", *(_spikes(values) if name in POSITIONS else (_NONE, "")))):
-            if not rows.size:
-                continue
-            few = rows.size <= max(3, FEW * values.size) and name in POSITIONS
-            done = "; bridged by their neighbours" if few else ""
-            found.append(
-                Finding(
-                    kind,
-                    WARN if few else ASK,
-                    name,
-                    f"{listed_rows(rows)} {what}{done}",
-                    "" if few else f"--despike {name}",
-                    tuple(rows.tolist()),
-                    bridged=tuple(rows.tolist()) if few else (),
-                )
-            )
-            break
-    return found
-
-
 _NONE = np.zeros(0, dtype=int)
 
 
+def codes(channels: Mapping[str, np.ndarray]) -> list[Finding]:
+    """Codes for failed readings, in every channel."""
+    found = []
+    for name, values in channels.items():
+        rows, what = code_rows(values)
+        if rows.size:
+            found.append(_bridged_or_asked("sentinel", name, values, rows, f"hold{'s' if rows.size == 1 else ''} {what}"))
+    return found
+
+
+def spikes(channels: Mapping[str, np.ndarray]) -> list[Finding]:
+    """Single samples that stand out, in x, y and z."""
+    found = []
+    for name in POSITIONS:
+        rows = spike_rows(channels[name]) if name in channels else _NONE
+        if rows.size:
+            what = f"stand{'s' if rows.size == 1 else ''} out alone from the motion around"
+            found.append(_bridged_or_asked("spike", name, channels[name], rows, what))
+    return found
+
+
+def _bridged_or_asked(kind: str, name: str, values: np.ndarray, rows: np.ndarray, what: str) -> Finding:
+    """A finding that bridges few samples of a position, and asks where they are many or a force's."""
+    every = tuple(rows.tolist())
+    if name in POSITIONS and rows.size <= max(3, FEW * values.size):
+        what = f"{listed_rows(rows)} {what}; bridged by the samples around"
+        return Finding(kind, WARN, name, what, rows=every, bridged=every)
+    return Finding(kind, ASK, name, f"{listed_rows(rows)} {what}", f"--despike {name}", every)
+
+
 def bad_rows(values: np.ndarray) -> np.ndarray:
-    """Rows (from 0) that `--despike` replaces: codes first, then spikes among what is left."""
-    return np.union1d(_codes(values)[1], _spikes(values)[0])
+    """Rows (from 0) that `--despike` replaces: codes, and spikes among what is left."""
+    rows = code_rows(values)[0]
+    return np.union1d(rows, spike_rows(bridge(values, rows)))
 
 
-def _codes(values: np.ndarray) -> tuple[str, np.ndarray, str]:
+def code_rows(values: np.ndarray) -> tuple[np.ndarray, str]:
     """Rows of a value that stands for none: far beyond all others, or 0 between samples that are not near it."""
     rows, first = _NONE, 0.0
     good = np.ones(values.size, dtype=bool)
@@ -78,8 +85,8 @@ def _codes(values: np.ndarray) -> tuple[str, np.ndarray, str]:
         else:
             break
     if rows.size:
-        return "sentinel", rows, f"hold {first:.6g}, far beyond all others: readings that failed"
-    return "sentinel", _zeros(values), "hold exactly 0 between samples far from it: readings that failed"
+        return rows, f"{first:.6g}, far beyond all others: a reading that failed"
+    return _zeros(values), "exactly 0 between samples far from it: a reading that failed"
 
 
 def _zeros(values: np.ndarray) -> np.ndarray:
@@ -112,9 +119,8 @@ def _zeros(values: np.ndarray) -> np.ndarray:
     return np.concatenate([_NONE, *(np.arange(a, b + 1) for a, b in zip(first[sure | off], last[sure | off], strict=True))])
 
 
-def _spikes(values: np.ndarray) -> tuple[np.ndarray, str]:
+def spike_rows(values: np.ndarray) -> np.ndarray:
     """Rows of single samples that stand out, up to three in a row."""
-    what = "stand out alone from the motion around them"
     found = _NONE
     r = surprise(values)
     floor = max(level(r) * SURPRISE_OF_NOISE, 0.3 * quantum(values))
@@ -127,9 +133,7 @@ def _spikes(values: np.ndarray) -> tuple[np.ndarray, str]:
             break
         found = np.union1d(found, new)
         r = surprise(bridge(values, found))
-    if found.size > MOST * values.size:
-        return _NONE, what
-    return found, f"stands{what[5:]}" if found.size == 1 else what
+    return found if found.size <= MOST * values.size else _NONE
 
 
 _SPIKE = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 6.0
