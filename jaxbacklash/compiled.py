@@ -107,7 +107,7 @@ def kept_jit(function: Callable[..., Any], lasting: Callable[..., bool] = lambda
     def fetch(*args: Any) -> None:
         setting: Any = jax.config
         folder = setting.jax_compilation_cache_dir
-        with contextlib.suppress(_Foreign, *UNKEPT):
+        with contextlib.suppress(_Foreign, OSError, *UNKEPT):
             if folder is not None and _path(function, args, _kinds(jax.tree.leaves(args)), folder).exists():
                 made(args)
 

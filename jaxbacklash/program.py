@@ -7,7 +7,12 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shlex
+import warnings
 from pathlib import Path
+
+from .errors import BadInput
+from .private_files import holds_only_own_files, make_private_folder
 
 MOST_CORES = 8
 """More devices than this do not speed up a fit of usual length."""
@@ -31,12 +36,15 @@ BRIEF = {"xla_cpu_use_fusion_emitters": "false"}
 it takes half as long again to compute, or several times as long."""
 
 
-def cache_folder() -> Path:
-    """Where compiled programs are kept: ``JAXBACKLASH_CACHE``, else the user's cache folder."""
+def cache_folder() -> Path | None:
+    """Where compiled programs are kept: ``JAXBACKLASH_CACHE``, else the user's cache folder; None for a user without a home."""
     chosen = os.environ.get("JAXBACKLASH_CACHE")
     if chosen:
         return Path(chosen)
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "jaxbacklash"
+    try:
+        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "jaxbacklash"
+    except RuntimeError:
+        return None
 
 
 def cores() -> int:
@@ -82,13 +90,34 @@ def start(*, cache: bool = True, devices: int | None = None, brief: bool = False
         shared = devices or min(cores(), MOST_CORES)
         # One more, on which all else is computed: see `jaxbacklash.sharing`.
         jax.config.update("jax_num_cpu_devices", shared + 1 if shared > 1 else 1)
+    _check_platform()
     if not cache:
         return
     folder = cache_folder()
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return  # a read-only home costs compile time, nothing else
+    # A read-only home, or none, costs compile time, nothing else.
+    if folder is None or not make_private_folder(folder):
+        if folder is not None and folder.is_dir() and os.access(folder, os.W_OK):
+            warnings.warn(
+                f"compiled programs are not kept in {folder}, since others can write to it or to what it is in: "
+                f"chmod go-w {shlex.quote(str(folder))}, or name another folder in JAXBACKLASH_CACHE", stacklevel=2,
+            )  # fmt: skip
+        return
+    if not holds_only_own_files(folder):
+        return  # what JAX keeps there is code too
     jax.config.update("jax_compilation_cache_dir", str(folder))
     jax.config.update("jax_persistent_cache_min_compile_time_secs", 0.0)
     jax.config.update("jax_persistent_cache_min_entry_size_bytes", 0)
+
+
+def _check_platform() -> None:
+    """Refuse a device that the environment asks for and that is not there, before anything is computed."""
+    asked = os.environ.get("JAX_PLATFORMS", "")
+    if asked in ("", "cpu"):
+        return  # always there; looking would wait for it
+    import jax
+
+    try:
+        jax.devices()
+    except Exception as why:  # whatever a plugin raises
+        text = next(iter(str(why).splitlines()), "") or type(why).__name__
+        raise BadInput(f"JAX_PLATFORMS={shlex.quote(asked)}: found no such device ({text}), wanted cpu or nothing") from None

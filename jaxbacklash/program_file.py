@@ -6,7 +6,6 @@ import contextlib
 import functools
 import os
 import pickle
-import tempfile
 import time
 import zlib
 from pathlib import Path
@@ -17,13 +16,20 @@ import numpy as np
 from jax.experimental import serialize_executable
 from jax.stages import Compiled
 
+from .private_files import is_private_folder, make_private_folder, read_private
+from .whole_file import write_whole
+
 SUFFIX = ".program"
+MAGIC = b"jaxbacklash program 1\n"
+"""How a file of ours begins; its own name and a checksum follow, so that no program is taken for another."""
+CHECK = 4
+"""Bytes of the checksum."""
 MONTH = 30 * 24 * 3600.0
 
 
 def read(path: Path) -> Compiled:
     """What calls a kept program. Raises whatever is wrong with its file."""
-    _, kept = pickle.loads(path.read_bytes())
+    _, kept = pickle.loads(_content(path))
     text, devices, ins, outs = pickle.loads(zlib.decompress(kept))
     if b"lapack_" in text:
         _find_lapack()
@@ -33,31 +39,63 @@ def read(path: Path) -> Compiled:
 
 def read_frame(path: Path) -> Any:
     """What was kept beside a program, which now counts as used. Raises whatever is wrong with its file."""
-    frame, _ = pickle.loads(path.read_bytes())
+    frame, _ = pickle.loads(_content(path))
     os.utime(path)
     return pickle.loads(frame)
+
+
+def _content(path: Path) -> memoryview:
+    """What the file of this name holds, if only this user can have written it, and under this name.
+
+    Raises
+    ------
+    OSError, ValueError
+        The file or its folder can be written by others, or it holds another program or half of one.
+    """
+    if not is_private_folder(path.parent):
+        raise PermissionError(1, "others can write to this folder", str(path.parent))
+    whole = memoryview(read_private(path))
+    head = _head(path.name)
+    content = whole[len(head) + CHECK :]
+    if whole[: len(head)] != head or whole[len(head) : len(head) + CHECK] != _check(content):
+        raise ValueError(f"{path.name}: not the program of this name")
+    return content
+
+
+def _head(name: str) -> bytes:
+    return MAGIC + name.encode() + b"\n"
+
+
+def _check(content: bytes | memoryview) -> bytes:
+    return zlib.crc32(content).to_bytes(CHECK, "big")
 
 
 def write(path: Path, call: Compiled, frame: Any) -> None:
     """Keep a program that was compiled in this process and ``frame``; programs that nobody used for a month go.
 
-    Raises what ``pickle`` and JAX raise for what cannot be written down. One that came out of JAX's own cache must not be given:
-    written down once more, it lacks some of its code.
+    Nothing is kept in a folder that others can write to. Raises what ``pickle`` and JAX raise for what cannot be written down.
+    One that came out of JAX's own cache must not be given: written down once more, it lacks some of its code.
     """
     text, ins, outs = serialize_executable.serialize(call)
     kept = zlib.compress(pickle.dumps((text, devices_of(call), ins, outs)), 1)
     # The frame apart: reading it loads the modules of its classes.
-    text = pickle.dumps((pickle.dumps(frame), kept))
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-            file.write(text)
-        os.replace(file.name, path)
-        for old in path.parent.iterdir():
-            if time.time() - old.stat().st_mtime > MONTH:
-                old.unlink()
-    except OSError:  # a full disk or a read-only home costs time, nothing else
+    content = pickle.dumps((pickle.dumps(frame), kept))
+    if not make_private_folder(path.parent):
         return
+    with contextlib.suppress(OSError):  # a full disk costs time, nothing else
+        write_whole(path, _head(path.name) + _check(content) + content, private=True)
+    _purge(path.parent)
+
+
+def _purge(folder: Path) -> None:
+    """Remove programs that nobody used for a month, and nothing that is not a program of ours."""
+    with contextlib.suppress(OSError), os.scandir(folder) as entries:
+        for entry in entries:
+            with contextlib.suppress(OSError):
+                old = time.time() - entry.stat(follow_symlinks=False).st_mtime > MONTH
+                # Under another ending where it was being written when the process was killed.
+                if old and SUFFIX in entry.name and read_private(entry.path, len(MAGIC)) == MAGIC:
+                    os.unlink(entry.path)
 
 
 def devices_of(call: Compiled) -> list[int]:

@@ -6,7 +6,7 @@ XLA needs a second to read the programs of `refine`, and does it without Python,
 from __future__ import annotations
 
 import contextlib
-import os
+import re
 import threading
 from collections.abc import Iterator
 from concurrent.futures import Future
@@ -15,8 +15,14 @@ from pathlib import Path
 from jax.stages import Compiled
 
 from . import program_file
+from .private_files import is_private_folder, read_private
+from .whole_file import write_whole
 
 SUFFIX = ".used"
+NAME = re.compile(rf"[\w-]+{re.escape(program_file.SUFFIX)}", re.ASCII)
+"""How a program's file is named: a bare name, with no way to another folder."""
+LONGEST_LIST = 100_000
+"""Bytes of a list that are read at most."""
 FIRST = 40
 """Programs that are read ahead at most. What a run calls late depends on what it finds, but records of one rig find the like, and
 the largest, of friction that gives, take a second each to read."""
@@ -39,14 +45,18 @@ def reading_ahead(command: str, folder: Path | None) -> Iterator[None]:
     command : the name under which runs are alike
     folder : the cache of compiled programs; None or a missing one: nothing is read ahead
     """
-    if folder is None or not (folder / "programs").is_dir():
+    if folder is None or not is_private_folder(folder / "programs"):
         yield
         return
     notes, ended = folder / "programs" / f"{command}{SUFFIX}", threading.Event()
-    for name in _long_first(notes.parent, _names(notes)):
-        ahead[name] = Future()
-    reader = threading.Thread(target=_read, args=(folder / "programs", dict(ahead), ended))
-    reader.start()
+    coming: dict[str, Future[Compiled | None]] = {name: Future() for name in _long_first(notes.parent, _names(notes))}
+    reader = threading.Thread(target=_read, args=(folder / "programs", coming, ended))
+    try:
+        reader.start()
+    except RuntimeError:  # no more threads for this user: each is read when it is asked for
+        yield
+        return
+    ahead.update(coming)
     try:
         yield
     finally:
@@ -88,15 +98,15 @@ def _long_first(folder: Path, names: list[str]) -> list[str]:
 
 
 def _names(notes: Path) -> list[str]:
+    """Names of programs in the folder of the list, and of nothing elsewhere."""
     try:
-        return list(dict.fromkeys(notes.read_text(encoding="utf-8").split()))
+        told = dict.fromkeys(read_private(notes, LONGEST_LIST).decode("utf-8").split())
     except (OSError, UnicodeDecodeError):
         return []
+    return [name for name in told if NAME.fullmatch(name)]
 
 
 def _write(notes: Path, names: list[str]) -> None:
     text = "\n".join(dict.fromkeys(names)) + "\n"
     with contextlib.suppress(OSError):  # a full disk or a read-only home costs time, nothing else
-        own = notes.with_name(f"{notes.name}.{os.getpid()}")
-        own.write_text(text, encoding="utf-8")
-        os.replace(own, notes)
+        write_whole(notes, text, private=True)

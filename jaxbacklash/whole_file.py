@@ -55,7 +55,7 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
             _unfinished.discard(os.fspath(part))
 
 
-def write_whole(path: str | os.PathLike[str], content: str | bytes, *, lasting: bool = False) -> None:
+def write_whole(path: str | os.PathLike[str], content: str | bytes, *, lasting: bool = False, private: bool = False) -> None:
     """Write a file whole or not at all.
 
     Parameters
@@ -63,6 +63,7 @@ def write_whole(path: str | os.PathLike[str], content: str | bytes, *, lasting: 
     path : the file to make or replace
     content : text goes into UTF-8; half characters, as in names of files that are not UTF-8, are written as escapes
     lasting : wait until it is on the disk
+    private : for this user alone
 
     Raises
     ------
@@ -70,7 +71,8 @@ def write_whole(path: str | os.PathLike[str], content: str | bytes, *, lasting: 
         The file cannot be written, by the reason the system gives.
     """
     data = content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content
-    with whole_file(path) as part, open(part, "wb") as file:
+    mode = 0o600 if private else 0o666
+    with whole_file(path) as part, open(part, "wb", opener=lambda name, flags: os.open(name, flags, mode)) as file:
         file.write(data)
         if lasting:
             file.flush()
