@@ -84,7 +84,8 @@ def _typed(words: Sequence[str], folder: Path) -> Iterator[None]:
             # A new process shows a warning though one before has shown it; pytest's own filters are not a user's.
             warnings.resetwarnings()
             warnings.simplefilter("always", UserWarning)
-            warnings.simplefilter("ignore", DeprecationWarning)
+            for usual in (DeprecationWarning, PendingDeprecationWarning, ImportWarning, ResourceWarning):
+                warnings.simplefilter("ignore", usual)
             yield
     finally:
         sys.argv = argv
