@@ -90,9 +90,7 @@ def test_the_encodings_of_spreadsheets(tmp_path, encoding):
 def test_columns_nobody_asked_for_are_kept_whatever_they_hold(tmp_path):
     table = motion()
     state = ["run"] * 999 + ["stop"]
-    path = write_table(
-        tmp_path / "rec.csv", table | {"state": state, "temp": ["", *["21.5"] * 999], "empty": [""] * 1000}
-    )
+    path = write_table(tmp_path / "rec.csv", table | {"state": state, "temp": ["", *["21.5"] * 999], "empty": [""] * 1000})
     record = read_record(path)
     assert_same(record, record_of())
     assert record.extras.keys() == {"state", "temp"}

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
+from collections import Counter
 from collections.abc import Iterable, Mapping
 
 import numpy as np
 
 from ..checks import MIN_SAMPLES, listed, wrong
+from ..header_units import split_unit
 from ..table import Column, Table
 
 MAX_CHANNELS = 256
@@ -79,7 +82,8 @@ class Columns:
                 self.notes.append(f"column {name} {note}")
         elif values.dtype.kind == "S":
             values = np.char.decode(values, "latin-1")
-        self.columns.append(Column(name or f"column {len(self.columns) + 1}", values, unit, aliases=aliases))
+        name = name or f"column {len(self.columns) + 1}"
+        self.columns.append(Column(name, values, unit or split_unit(name.rpartition("/")[2])[1], aliases=aliases))
 
     def _matrix(self, name: str, values: np.ndarray, unit: str, aliases: tuple[str, ...]) -> None:
         """Samples go along the longer side."""
@@ -93,22 +97,42 @@ class Columns:
 
     def _constant(self, name: str, values: np.ndarray) -> None:
         """A single value is a setting, not a column; it may be the rate."""
-        plain = "".join(mark for mark in name.rpartition(".")[2].rpartition("/")[2].lower() if mark.isalnum())
         if not values.size:
             self.left_out[name] = "an empty array"
             return
         self.left_out[name] = f"an array of shape {values.shape}, a single value"
-        if values.dtype.kind in "fiu" and plain in RATES | PERIODS:
-            value = float(values.ravel()[0])
-            rate = value if plain in RATES else 1.0 / value if value else 0.0
-            if LOWEST_RATE <= rate <= HIGHEST_RATE:
-                self.rate_hz = rate
+        if values.dtype.kind in "fiu":
+            self.take_rate(name, float(values.ravel()[0]))
+
+    def take_rate(self, name: str, value: float) -> None:
+        """Take the rate from a single number, where its name says that it is one."""
+        plain = "".join(mark for mark in name.rpartition(".")[2].rpartition("/")[2].lower() if mark.isalnum())
+        rate = value if plain in RATES else 1.0 / value if plain in PERIODS and value else 0.0
+        if LOWEST_RATE <= rate <= HIGHEST_RATE:
+            self.rate_hz = rate
 
     def table(self, format: str, details: Mapping[str, str] | None = None) -> Table:
         """All of it, as a reader returns it."""
-        return Table(
-            tuple(self.columns), format, dict(details or {}), tuple(self.notes), self.rate_hz, left_out=dict(self.left_out)
-        )
+        columns = with_bare_names(self.columns)
+        return Table(columns, format, dict(details or {}), tuple(self.notes), self.rate_hz, left_out=dict(self.left_out))
+
+
+def with_bare_names(columns: Iterable[Column]) -> tuple[Column, ...]:
+    """Columns that may be asked for without their groups too ("rig/x" for "run 1/rig/x"), where no other has that name."""
+    columns = tuple(columns)
+    shorter = [_endings(column.name) for column in columns]
+    count = Counter(name for column, names in zip(columns, shorter, strict=True) for name in (column.name, *names))
+    return tuple(
+        dataclasses.replace(column, aliases=(*column.aliases, *(name for name in names if count[name] == 1)))
+        for column, names in zip(columns, shorter, strict=True)
+    )
+
+
+def _endings(name: str) -> list[str]:
+    """What is left of "a/b/c" without its first groups: "b/c", "c"; a mere number is no name."""
+    parts = name.split("/")
+    endings = ["/".join(parts[first:]) for first in range(1, len(parts))]
+    return [ending for ending in endings if not ending.isdecimal()]
 
 
 def named_matrix(arrays: Mapping[str, np.ndarray], where: str) -> dict[str, np.ndarray]:

@@ -4,8 +4,11 @@ damaged file or runs out of memory, and quiet where it would print."""
 from __future__ import annotations
 
 import contextlib
+import gc
 import importlib
 import logging
+import sys
+import traceback
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
@@ -59,26 +62,38 @@ def guarded(path: Path, kind: str, wanted: str) -> Iterator[None]:
             yield
         except (BadInput, KeyboardInterrupt):
             raise
-        except MemoryError as why:
-            size = f"{path.stat().st_size / 1e6:.3g} MB"
-            raise wrong(where, f"more numbers than fit into memory (the file has {size})", "a shorter record") from why
-        except RecursionError as why:
-            raise wrong(where, "values nested deeper than any record is", wanted) from why
         except Exception as why:  # The libraries raise whatever the damage happens to trip.
+            _let_go(why)
+            if isinstance(why, MemoryError):
+                kind = f"more numbers than fit into memory (the file has {path.stat().st_size / 1e6:.3g} MB)"
+                wanted = "a shorter record"
+            elif isinstance(why, RecursionError):
+                kind = "values nested deeper than any record is"
             raise wrong(where, kind, wanted) from why
+
+
+def _let_go(why: BaseException | None) -> None:
+    """Drop what a library holds of a file that it failed to open, while its complaints about that are still kept quiet."""
+    while why is not None:
+        traceback.clear_frames(why.__traceback__)
+        why = why.__cause__ or why.__context__
+    gc.collect(1)  # the youngest objects only: all of them take a quarter of a second
 
 
 @contextlib.contextmanager
 def quiet() -> Iterator[None]:
     """Keep a library's warnings and log lines, which speak of its own insides, off the user's terminal."""
-    before = logging.root.manager.disable
+    before, hook = logging.root.manager.disable, sys.unraisablehook
     logging.disable(logging.CRITICAL)
+    # Objects that were built by half complain again when they are thrown away.
+    sys.unraisablehook = lambda _: None
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             yield
     finally:
         logging.disable(before)
+        sys.unraisablehook = hook
 
 
 def bounded(size: int, where: str, what: str = "numbers") -> None:

@@ -15,7 +15,9 @@ from ..checks import wrong
 from ..table import Table
 from .arrays import MAX_CHANNELS, Columns, named_matrix, tidy
 from .guard import guarded
-from .mat_tree import MAX_DEPTH, Instance, Tree, Unread
+from .mat5 import OPAQUE_NAME
+from .mat_objects import with_objects
+from .mat_tree import MAX_DEPTH, Instance, Measured, Tree, Unread
 
 HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 MATLAB_HEADER_BYTES = 512
@@ -49,34 +51,37 @@ def read(path: Path) -> Table:
             from .mat73 import read_tree
         else:
             from .mat5 import read_tree
-        tree = read_tree(path)
-        return _table(tree, path, "mat 7.3" if newer else "mat")
+        tree, missing = with_objects(read_tree(path), path)
+        return _table(tree, path, "mat 7.3" if newer else "mat", missing)
 
 
-def _table(tree: Tree, path: Path, kind: str) -> Table:
-    """The tree's leaves as columns."""
+def _table(tree: Tree, path: Path, kind: str, missing: bool) -> Table:
+    """The tree's leaves as columns; ``missing`` where a library would read more of them."""
     leaves: list[tuple[str, Any, str]] = []
     for name, value in tree.items():
         _walk(name, value, leaves, 0)
     columns = Columns()
     short = _short_names([name for name, _, _ in leaves])
     labels = [label for _, _, label in leaves if label]
-    named = named_matrix({short[name]: value for name, value, _ in leaves if isinstance(value, np.ndarray)}, str(path))
+    units = {short[name]: value.unit for name, value, _ in leaves if isinstance(value, Measured)}
+    arrays = {short[name]: value.values if isinstance(value, Measured) else value for name, value, _ in leaves}
+    named = named_matrix({name: value for name, value in arrays.items() if isinstance(value, np.ndarray)}, str(path))
     for name, value, label in leaves:
         shown = short[name]
         if isinstance(value, Instance):
             columns.left_out[shown] = f"a value of MATLAB's class {value.kind}"
-            columns.notes.append(f"{shown} is a value of MATLAB's class {value.kind}, {way_out(name, value.kind, path)}")
+            columns.notes.append(f"{shown} is a value of MATLAB's class {value.kind}, {way_out(name, value.kind, path, missing)}")
         elif isinstance(value, Unread | str):
             columns.left_out[shown] = value.found if isinstance(value, Unread) else "text"
         elif shown in named:
             called = label if labels.count(label) == 1 and label not in short.values() else shown
-            columns.add(called, named.pop(shown), aliases={name, shown} - {called})
+            columns.add(called, named.pop(shown), units.get(shown, ""), {name, shown} - {called})
     for name, values in named.items():
         columns.add(name, values)
     if not columns.columns and columns.notes:
         name, instance = next((name, value) for name, value, _ in leaves if isinstance(value, Instance))
-        raise wrong(str(path), f"nothing but values of MATLAB's class {instance.kind}", way_out(name, instance.kind, path))
+        found = f"nothing but values of MATLAB's class {instance.kind}"
+        raise wrong(str(path), found, way_out(name, instance.kind, path, missing))
     return columns.table(kind)
 
 
@@ -129,16 +134,21 @@ def _short_names(names: list[str]) -> dict[str, str]:
     return short
 
 
-def way_out(name: str, kind: str, path: Path) -> str:
-    """How to get a value of a MATLAB class into a file that can be read: the line of MATLAB that exports it."""
+def way_out(name: str, kind: str, path: Path, missing: bool = False) -> str:
+    """How to get a value of a MATLAB class into a file that can be read: the line of MATLAB that exports it; or, where only the
+    library is ``missing`` that reads such values, the library."""
+    if missing and kind in ("table", "timetable", "string", "datetime", "duration", "categorical"):
+        return 'mat-io to read it: pip install "jaxbacklash[io]"'
+    name = "ans" if name == OPAQUE_NAME else name
     target = f"{path.stem}.csv".replace("'", "''")
+    timetable = f"writetimetable(extractTimetable({name}), '{target}')"
     lines = {
         "table": f"writetable({name}, '{target}')",
         "timetable": f"writetimetable({name}, '{target}')",
         "timeseries": f"writematrix([{name}.Time, squeeze({name}.Data)], '{target}')",
-        "Simulink.SimulationData.Dataset": f"writetimetable(extractTimetable({name}), '{target}')",
-        "Simulink.SimulationOutput": f"writetimetable(extractTimetable({name}), '{target}')",
-        "Simulink.SimulationData.Signal": f"writetimetable(extractTimetable({name}), '{target}')",
+        "Simulink.SimulationData.Dataset": timetable,
+        "Simulink.SimulationData.Signal": timetable,
+        "Simulink.SimulationOutput": timetable,
     }
     plain = f"s = struct({name}); save('{path.stem}_plain.mat', '-struct', 's', '-v7')"
-    return f"a file that MATLAB writes with  {lines.get(kind, plain)}"
+    return f"a file that MATLAB writes with: {lines.get(kind, plain)}"
