@@ -197,7 +197,9 @@ def _of_text(values: np.ndarray, unit: str, where: str, name: str) -> tuple[np.n
     """Stamps, or whole numbers too long for double precision, kept as text."""
     values = np.char.strip(values)
     filled = values[values != ""]
-    if filled.size == values.size > 0 and filled[0].isdigit() and len(filled[0]) < 19 + (filled[0] < "9") and np.all(np.char.isdigit(filled)):
+    # Counts up to 9e18, as far as 64 bits go.
+    fits = filled.size == values.size > 0 and filled[0].isdigit() and len(filled[0]) < 19 + (filled[0] < "9")
+    if fits and np.all(np.char.isdigit(filled)):
         counts = values.astype(np.int64)
         count = _count(counts, unit)
         if count is not None:

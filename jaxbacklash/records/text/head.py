@@ -16,6 +16,9 @@ WINDOWS = (150, 1200, 10000)
 """Lines looked at first, and as many more where rows of values do not fill the end of what was looked at."""
 
 COMMENT = re.compile(r'\s*(?:"?(?:#(?!N/A|NV|VALUE|DIV|NUM|REF)|%|//)|!(?=\s|$))')
+ENOUGH = 0.45
+"""A separator that finds less than this share of the values of another is out of the question."""
+
 SEPARATORS = ("\t", ";", ",", "|", None)
 NAMES = {"\t": "tab", ";": "semicolon", ",": "comma", "|": "bar", None: "blanks", ":": "colon"}
 
@@ -115,7 +118,10 @@ class Head:
         """The run that looks most like a table, and of equal ones that of the separator named first."""
         present = [mark for mark in separators if mark is None or any(mark in line.text for line in self.lines)]
         found = [max(runs, key=lambda run: run.score) for mark in present if (runs := self.runs(mark))]
-        return max(found, key=lambda run: (round(run.score, 6), self.fits_above(run)), default=None) if found else None
+        most = max((run.score for run in found), default=0.0)
+        # "0,5" below "z" is one number: a run with a header of its own width is taken before one of twice the numbers.
+        near = [run for run in found if run.score >= ENOUGH * most]
+        return max(near, key=lambda run: (self.fits_above(run), round(run.score, 6)), default=None)
 
     def fits_above(self, run: Run) -> bool:
         """Whether the line above a run has as many cells, none of them a value."""

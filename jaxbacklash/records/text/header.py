@@ -50,22 +50,22 @@ def find_names(head: Head, run: Run, where: str) -> Names:
         rows = _commented(head, run)
     if not rows:
         return _unnamed(head, run, where)
-    width = run.width
+    width, filled = run.width, len(run.kinds.rstrip(MISSING))
     units = [""] * width
     notes: list[str] = []
     used = [rows[0]]
     rate = None
     index, cells = rows[0]
-    if len(rows) > 1 and _all_units(cells, width):
-        units, place, rate = [_bare(cell) for cell in spread(cells, width)], "under", _increment(rows[1][1], cells, width)
+    if len(rows) > 1 and _all_units(cells, filled):
+        units, place, rate = [_bare(cell) for cell in spread(cells, width)], "under", _increment(rows[1][1], cells, filled)
         index, cells = rows[1]
         used.append(rows[1])
-    elif len(rows) > 1 and _all_units(rows[1][1], width) and not _all_units(cells, width):
+    elif len(rows) > 1 and _all_units(rows[1][1], filled) and not _all_units(cells, filled):
         units, place = [_bare(cell) for cell in spread(rows[1][1], width)], "above"
         used.append(rows[1])
     if len(used) > 1:
         notes.append(f"the row of units {place} the header ({listed(each or '-' for each in units)}) is used")
-    cells = _fitted(cells, head, index, run, where)
+    cells = cells[:filled] if rate else _fitted(cells, head, index, run, where)
     width = len(cells)
     following = [each for each in rows if each[0] < min(row for row, _ in used)]
     if len(set(filter(None, cells))) < len([cell for cell in cells if cell]) and following and _groups(following[0][1], width):
@@ -101,7 +101,7 @@ def _rows_above(head: Head, run: Run) -> list[tuple[int, list[str]]]:
 def _row_of_words(text: str, run: Run) -> list[str] | None:
     """The cells of a line that may hold names or units; None where it holds numbers."""
     cells = split(text, run.separator)
-    words = cells[: run.width]
+    words = cells[: len(run.kinds.rstrip(MISSING))]
     if any(kind(cell) in (NUMBER, STAMP) and not is_unit(cell) for cell in words) or not any(words):
         return None
     return cells
@@ -161,11 +161,14 @@ def _fitted(cells: list[str], head: Head, index: int, run: Run, where: str) -> l
     width = run.width
     # Every line may end with a separator, and then the last column is none.
     filled = len(run.kinds.rstrip(MISSING))
-    while len(cells) > width and (not cells[-1] or cells[-1].lower() == "comment" or _beside(head, index, run)):
+    while len(cells) > width and (not cells[-1] or cells[-1].lower() == "comment"):
         cells = cells[:-1]
     if len(cells) == width:
         while width > filled and not cells[-1]:
             cells, width = cells[:-1], width - 1
+        # "t, x, z" above values between blanks is cut at blanks too, and keeps its commas.
+        if run.separator is None and any(cell.endswith((",", ";")) for cell in cells[:-1]):
+            return [cell.strip(",;") for cell in cells]
         return cells
     if filled <= len(cells) < width:
         return cells
@@ -196,15 +199,6 @@ def _fitted(cells: list[str], head: Head, index: int, run: Run, where: str) -> l
     if run.separator == "," and width == 2 * len(cells):
         hint = "; decimal commas in a file separated by commas need quotes, or semicolons as separators"
     raise wrong(f"{where} line {line}", found, f"{names}, as many as line {head.lines[index].number} has names{hint}")
-
-
-def _beside(head: Head, index: int, run: Run) -> bool:
-    """Whether what stands behind the names has its values in the next row alone, as scopes write start and increment."""
-    return (
-        index + 1 < run.first
-        and len(head.cells(index + 1, run.separator)) > run.width
-        and _increment(head.cells(index, run.separator), head.cells(index + 1, run.separator), run.width) is not None
-    )
 
 
 def _other_ways(text: str) -> list[list[str]]:

@@ -5,10 +5,12 @@ from __future__ import annotations
 import dataclasses
 import re
 
-from ..checks import listed, wrong
+from jaxbacklash.errors import BadInput
+
+from ..checks import wrong
 from .cells import MISSING, NUMBER, STAMP, WORD
-from .head import NAMES, SEPARATORS, WINDOWS, Head, Line, Run, read_lines
-from .header import Names, find_names
+from .head import SEPARATORS, WINDOWS, Head, Line, Run, read_lines
+from .header import find_names
 from .opening import Source
 from .statements import stated_rate
 
@@ -143,7 +145,7 @@ def _mark(separator: str) -> str | None:
     return None if separator == " " else separator
 
 
-def _no_table(head: Head, where: str, skip: int):
+def _no_table(head: Head, where: str, skip: int) -> BadInput:
     """The refusal of a file in which no line holds a value."""
     kept = [line for line in head.lines if not line.blank]
     after = f" after the {skip} lines that --skip passes over" if skip else ""
@@ -164,16 +166,17 @@ def _no_table(head: Head, where: str, skip: int):
 def _beginning(head: Head, run: Run, where: str) -> int:
     """Index of the first line of values.
 
-    Above the best run there may be more of the table: rows with a word where a number is missing part it, and so does a header
-    that comes again.
+    Above the best run there may be more of the table: a row with a word for a number parts it, a line of another width (which
+    is refused later, by its number), or a header that comes again.
 
     Raises
     ------
     BadInput
-        Where a line of another width, or another table, stands between rows: all rows above it would be lost.
+        Where another table stands above: all its rows would be lost.
     """
     values = [place for place, kind in enumerate(run.kinds) if kind in (NUMBER, STAMP)]
-    first, between, words, rows = run.first, [], [], 0
+    first, rows = run.first, 0
+    words: list[int] = []
     for index in reversed(range(run.first)):
         if head.passed(index, run.separator):
             continue
@@ -181,33 +184,20 @@ def _beginning(head: Head, run: Run, where: str) -> int:
         if not (
             len(kinds) <= run.width and all(kinds[place : place + 1] in (NUMBER, STAMP) for place in values if kinds[place:])
         ):
-            between.append(index)
             words += [index] * (set(kinds) <= {WORD, MISSING} and len(kinds) > 1)
             continue
         if len(kinds) <= values[-1]:
-            between.append(index)
             continue
         rows += 1
         if not words:
-            odd = next(
-                (
-                    each
-                    for each in between
-                    if len(head.kinds(each, run.separator).rstrip(MISSING)) > run.width
-                    or len(head.kinds(each, run.separator)) < len(run.kinds.rstrip(MISSING))
-                ),
-                None,
-            )
-            if odd is not None:
-                raise _parted(head, run, odd, where)
-            first, between = index, []
+            first = index
     if rows and words:
         texts = {head.lines[index].text.strip() for index in words}
         # The same header above both parts: one log behind another.
         if len(texts) == 1 and len(words) > 1:
             return _first_below(head, run, words[-1])
         if first == run.first and rows > PARAMETERS:
-            raise _parted(head, run, words[0], where)
+            raise _second_table(head, words[0], where)
     return first
 
 
@@ -217,33 +207,18 @@ PARAMETERS = 20
 
 def _first_below(head: Head, run: Run, header: int) -> int:
     """Index of the first line of values below a header."""
-    return next(
-        index
-        for index in range(header + 1, run.first + 1)
-        if not head.passed(index, run.separator) and NUMBER in head.kinds(index, run.separator) + STAMP * (index == run.first)
-    )
+    rows = (index for index in range(header + 1, run.first) if not head.passed(index, run.separator))
+    return next((index for index in rows if set(head.kinds(index, run.separator)) & {NUMBER, STAMP}), run.first)
 
 
-def _parted(head: Head, run: Run, index: int, where: str):
-    """The refusal of a table that a line parts in two."""
+def _second_table(head: Head, index: int, where: str) -> BadInput:
+    """The refusal of a file with two tables."""
     line = head.lines[index]
-    count = len(head.cells(index, run.separator))
-    if set(head.kinds(index, run.separator)) <= {WORD, MISSING} and count == run.width:
-        shown = " ".join(line.text.split())[:40]
-        return wrong(
-            f"{where} line {line.number}",
-            f'a second table ("{shown}")',
-            f"one table; --skip {line.number - 1} passes over what is above it",
-        )
-    found = f"{count} value{'s' * (count != 1)} between lines of {run.width}"
-    return wrong(
-        f"{where} line {line.number}", found, f"{run.width} in every line, or --skip {line.number} if the table begins below"
-    )
+    shown = " ".join(line.text.split())[:40]
+    wanted = f"one table; --skip {line.number - 1} passes over what is above this one"
+    return wrong(f"{where} line {line.number}", f'a second table ("{shown}")', wanted)
 
 
 def _comments(head: Head, first: int) -> list[Line]:
     """Comments between the first rows of values."""
     return [line for line in head.lines[first:] if line.comment]
-
-
-__all__ = ["NAMES", "Layout", "Names", "find_layout", "listed"]

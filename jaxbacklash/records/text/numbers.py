@@ -37,6 +37,9 @@ _MARKS = {
 _TRUTH = {"true": 1.0, "false": 0.0}
 _NAN = "nan"
 
+LONG = re.compile(r"\s*[-+]?\d{17,}\s*")
+"""Whole numbers beyond what double precision holds exactly (2^53)."""
+
 SAMPLE = 100
 """Cells of a column that are looked at before all of it is taken for numbers with units."""
 
@@ -106,11 +109,12 @@ def read_numbers(
         # What points mean in a column that NumPy can read may still be shown by the commas of another.
         commas = any("," in text for number, texts in enumerate(columns) if number not in done for text in texts)
         for number in [number for number in cells if number not in done or commas]:
-            cells[number] = _judged(columns[number])
+            cells[number] = judged(columns[number])
     proof = frozenset().union(*(column.proof for column in cells.values()))
     marks = []
     for number, column in cells.items():
-        if not (column.point or column.comma):
+        # Counts of nanoseconds since 1970 stay text, for `times.seconds`: double precision would round them to 256.
+        if not (column.point or column.comma) or LONG.fullmatch(column.texts[0]):
             continue
         mark = _decide(column, proof, decimal, functools.partial(_place, place, names[number]))
         done[number] = column.values(mark) if number not in done or mark == "," else done[number]
@@ -126,7 +130,9 @@ def read_numbers(
 
 
 def _direct(texts: Sequence[str]) -> np.ndarray | None:
-    """The numbers of a column that Python can read as it stands, None for any other."""
+    """The numbers of a column that Python can read as it stands, None for any other, or where double precision loses digits."""
+    if texts and LONG.fullmatch(texts[0]):
+        return None
     try:
         values = np.array(list(map(float, texts)))
     except ValueError:
@@ -141,7 +147,7 @@ def _tidy(text: str) -> str:
     return _NAN if text.lower() in ABSENT else text
 
 
-def _judged(texts: Sequence[str]) -> Cells:
+def judged(texts: Sequence[str]) -> Cells:
     """What the cells of a column can mean."""
     tidy = [_tidy(text) for text in texts]
     filled = [(row, text) for row, text in enumerate(tidy) if text != _NAN]
@@ -154,7 +160,7 @@ def _judged(texts: Sequence[str]) -> Cells:
             return column
         pairs += [pair for _, text in filled[SAMPLE:] if (pair := number_and_unit(text))]
         if len(pairs) == len(filled) and len({unit for _, unit in pairs}) == 1:
-            again = _judged([number for number, _ in pairs])
+            again = judged([number for number, _ in pairs])
             for (row, _), (number, _) in zip(filled, pairs, strict=True):
                 tidy[row] = number
             doubtful = None if again.doubtful is None else filled[again.doubtful][0]

@@ -11,7 +11,7 @@ import numpy as np
 
 from .cells import MISSING, NUMBER, split
 from .layout import Layout
-from .numbers import Cells, _judged
+from .numbers import LONG, Cells, judged
 
 
 def read_plain(layout: Layout, decimal: str | None) -> tuple[np.ndarray, str, np.ndarray | None] | None:
@@ -38,7 +38,7 @@ def read_plain(layout: Layout, decimal: str | None) -> tuple[np.ndarray, str, np
     comma = any("," in line for line in layout.sample) and layout.separator != ","
     if comma and not _is_decimal_comma(layout, decimal):
         return None
-    if layout.quoted and comma:
+    if (layout.quoted and comma) or any(map(LONG.fullmatch, split(layout.sample[0], layout.separator))):
         return None
     try:
         _load(_pointed(layout.sample, comma), layout)
@@ -64,7 +64,7 @@ def _pointed(lines: Iterable[str], comma: bool) -> Iterable[str]:
 def _is_decimal_comma(layout: Layout, decimal: str | None) -> bool:
     """Whether the first lines prove that the comma is the decimal mark of every column that has one."""
     rows = [split(line, layout.separator) for line in layout.sample]
-    columns: list[Cells] = [_judged(column) for column in zip(*rows, strict=False)]
+    columns: list[Cells] = [judged(column) for column in zip(*rows, strict=False)]
     proved = any("," in column.proof for column in columns) or decimal == ","
     return proved and decimal != "." and not any("." in column.proof for column in columns)
 

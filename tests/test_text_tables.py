@@ -1,0 +1,528 @@
+"""Text tables are read as loggers, scopes, spreadsheets and controllers write them, or refused with the line and the way out."""
+
+import gzip
+import re
+import shlex
+import zlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from jaxbacklash.errors import BadInput
+from jaxbacklash.records.table import Table
+from jaxbacklash.records.text import opening, read_text
+
+ROWS = 120
+T = np.round(np.arange(ROWS) * 0.002, 6)
+X = np.round(0.1 * np.sin(13 * T) - 0.01, 7)
+Z = np.round(3e-4 * np.cos(29 * T), 9)
+GOOD = {"t": T, "x": X, "z": Z}
+
+
+def cells(mark: str = ".") -> list[list[str]]:
+    """The rows of the good table as text."""
+    return [[f"{value:.12g}".replace(".", mark) for value in row] for row in zip(T, X, Z, strict=True)]
+
+
+def text(separator=",", mark=".", names=("t", "x", "z"), end="\n", quote="") -> str:
+    """The good table."""
+    head = [separator.join(names)] if names else []
+    return end.join([*head, *(separator.join(f"{quote}{cell}{quote}" for cell in row) for row in cells(mark))]) + end
+
+
+def read(folder: Path, content: str | bytes, name: str = "rec.csv", **options) -> Table:
+    path = folder / name
+    path.write_bytes(content.encode() if isinstance(content, str) else content)
+    return read_text(path, **options)
+
+
+def assert_good(table: Table, names=("t", "x", "z"), places=(0, 1, 2)) -> None:
+    """The three columns hold the good values to the last digit."""
+    assert [table.columns[place].name for place in places] == list(names)
+    for place, values in zip(places, GOOD.values(), strict=True):
+        np.testing.assert_allclose(table.columns[place].values, values, rtol=1e-15, atol=0)
+
+
+def put(number: int, line: str):
+    """A change that puts a line before line ``number`` (from 1)."""
+    return lambda lines: [*lines[: number - 1], line, *lines[number - 1 :]]
+
+
+# ---- Bytes ----
+
+ENCODINGS = ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "utf-32", "latin-1", "cp1252"]
+
+
+@pytest.mark.parametrize("packed", [False, True])
+@pytest.mark.parametrize("encoding", ENCODINGS)
+def test_every_usual_encoding(tmp_path, encoding, packed):
+    data = text("\t", names=("t", "x [µm]", "z")).encode(encoding)
+    table = read(tmp_path, gzip.compress(data) if packed else data, "rec.csv.gz" if packed else "rec.txt")
+    assert_good(table, ("t", "x [µm]", "z"))
+    assert table.columns[1].unit == "µm"
+    assert ("packed" in table.details) == packed
+
+
+def test_latin_letters_outside_the_bytes_looked_at_first_hinder_nothing(tmp_path):
+    comment = "# " + "rig " * 40000 + "\n"
+    assert_good(read(tmp_path, ("# a\n" + comment).encode() + "# 20 °C\n".encode("latin-1") + text().encode()))
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_every_line_end(tmp_path, end):
+    table = read(tmp_path, text(end=end))
+    assert_good(table)
+    assert table.place(7) == "row 8 (line 9)"
+
+
+def test_mixed_line_ends(tmp_path):
+    lines = text().splitlines()
+    mixed = "".join(line + end for line, end in zip(lines, ["\n", "\r\n", "\r"] * len(lines), strict=False))
+    assert_good(read(tmp_path, mixed))
+
+
+@pytest.mark.parametrize(
+    ("data", "fragment"),
+    [
+        (b"", "an empty file"),
+        (b" \n\n", "an empty file"),
+        (b"\0" * 500, "NUL bytes"),
+        (bytes(range(256)) * 20, "binary data"),
+        (b"PK\x03\x04" + bytes(300), "binary data, packed as zip"),
+        (b"\xfd7zXZ\0" + bytes(300), "packed by xz"),
+        (text().encode()[:900] + b"\0" * 300, "NUL bytes from line"),
+        (text().encode() * 60 + b"\0\0\0\0", "NUL bytes"),
+        (gzip.compress(text().encode())[:-20], "ends in the middle"),
+        (gzip.compress(text().encode())[:40] + b"abc" + gzip.compress(text().encode())[43:], "damaged gzip"),
+        (gzip.compress(bytes(10**7)), "NUL bytes"),
+        (b"t,x,z\n" + b"1" * 3_000_000 + b"\n0,1,2\n", "a line of more than 1048576 characters"),
+    ],
+)
+def test_what_is_no_text_is_refused(tmp_path, data, fragment):
+    with pytest.raises(BadInput, match=re.escape(fragment)):
+        read(tmp_path, data)
+
+
+def test_a_packed_file_without_end_is_refused_in_little_memory(tmp_path, monkeypatch):
+    monkeypatch.setattr(opening, "MOST_UNPACKED", 2**20)
+    path = tmp_path / "a file.csv.gz"
+    pack = zlib.compressobj(9, zlib.DEFLATED, 31)
+    path.write_bytes(pack.compress(b"t,x\n" + b"0.1,0.2\n" * 400_000) + pack.flush())
+    with pytest.raises(BadInput, match="more than 1 MB of text") as caught:
+        read_text(path)
+    assert f"gunzip -k {shlex.quote(str(path))}" in str(caught.value)
+
+
+# ---- Separators, quotes and decimal marks ----
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+@pytest.mark.parametrize("mark", [".", ","])
+@pytest.mark.parametrize("separator", [",", ";", "\t", "|", " ", "   ", ", ", " ; ", "\t "])
+@pytest.mark.parametrize("quote", ["", '"'])
+def test_every_separator_with_points_and_commas(tmp_path, separator, mark, quote, end):
+    if mark == "," and "," in separator and not quote:
+        pytest.skip("commas between decimal commas: refused, see below")
+    table = read(tmp_path, text(separator, mark, quote=quote, end=end))
+    assert_good(table)
+    assert table.details["decimal mark"] == {".": "point", ",": "comma"}[mark]
+
+
+def test_commas_between_decimal_commas_are_refused(tmp_path):
+    rows = [",".join(f"{value:.3f}".replace(".", ",") for value in row) for row in zip(T, X, Z, strict=True)]
+    with pytest.raises(BadInput, match=r"line 2: found 6 values, wanted 3 .*decimal commas in a file separated by commas"):
+        read(tmp_path, "\n".join(["t,x,z", *rows]))
+
+
+@pytest.mark.parametrize("line", ["sep=;", "SEP=;", '"sep=;"', "\ufeffsep=;"])
+def test_excels_first_line(tmp_path, line):
+    table = read(tmp_path, line + "\r\n" + text(";", end="\r\n"))
+    assert_good(table)
+    assert table.details["header line"] == "2"
+
+
+def test_one_column_of_decimal_commas(tmp_path):
+    table = read(tmp_path, "z\n" + "\n".join(f"{value:.5f}".replace(".", ",") for value in X) + "\n")
+    np.testing.assert_allclose(table.columns[0].values, np.round(X, 5), rtol=1e-15)
+    assert len(table.columns) == 1
+
+
+COUNTS = [500, 1234, -4139, 12, 1006, 4000, -2, 999, 1200, 3141] * 12
+
+
+@pytest.mark.parametrize("separator", ["\t", ";", "|", " "])
+def test_a_comma_that_can_mark_thousands_or_decimals_is_refused(tmp_path, separator):
+    rows = [separator.join([f"{t:.3f}", f"{count:,}"]) for t, count in zip(T, COUNTS, strict=True)]
+    content = "\n".join([separator.join(["t", "x"]), *rows]) + "\n"
+    with pytest.raises(BadInput) as caught:
+        read(tmp_path, content)
+    message = str(caught.value)
+    assert 'line 3, column x: found "1,234", which can be 1234 or 1.234' in message
+    assert "--decimal . if it is 1234" in message
+    assert "--decimal , if it is 1.234" in message
+    np.testing.assert_array_equal(read(tmp_path, content, decimal=".").columns[1].values, COUNTS)
+    small = [count / 1000 if abs(count) > 999 else count for count in COUNTS]
+    np.testing.assert_array_equal(read(tmp_path, content, decimal=",").columns[1].values, small)
+    # The times are written with points, whatever commas are.
+    np.testing.assert_array_equal(read(tmp_path, content, decimal=",").columns[0].values, T)
+
+
+@pytest.mark.parametrize(
+    "write",
+    [
+        lambda v: f"{v:,.2f}",
+        lambda v: f"{v:,.2f}".replace(",", " "),
+        lambda v: f"{v:,.2f}".replace(",", "'"),
+        lambda v: f"{v:,.2f}".replace(",", "\u202f"),
+        lambda v: f"{v:,.2f}".replace(",", "_").replace(".", ",").replace("_", "."),
+        lambda v: f"{v:,.2f}".replace(",", "\u00a0").replace(".", ","),
+        lambda v: f"{v:,.2f}".replace(",", "'").replace(".", ","),
+    ],
+)
+def test_thousands_marks_that_can_be_read_in_one_way(tmp_path, write):
+    counts = np.array(COUNTS) * 1000.25
+    rows = [f"{t:.3f};{write(count)}" for t, count in zip(T, counts, strict=True)]
+    table = read(tmp_path, "\n".join(["t;x", *rows]) + "\n")
+    np.testing.assert_allclose(table.columns[1].values, np.round(counts, 2), rtol=1e-12)
+    np.testing.assert_array_equal(table.columns[0].values, T)
+
+
+def test_points_that_mark_thousands_beside_decimal_commas(tmp_path):
+    rows = [f"{t:.3f}".replace(".", ",") + ";" + f"{count:,}".replace(",", ".") for t, count in zip(T, COUNTS, strict=True)]
+    content = "\n".join(["t;x", *rows]) + "\n"
+    with pytest.raises(BadInput, match=r'line 3, column x: found "1\.234", which can be 1234 or 1\.234'):
+        read(tmp_path, content)
+    np.testing.assert_array_equal(read(tmp_path, content, decimal=",").columns[1].values, COUNTS)
+    proved = content + "0,240;1.234.567\n"
+    np.testing.assert_array_equal(read(tmp_path, proved).columns[1].values, [*COUNTS, 1234567])
+
+
+# ---- What stands above, between and below ----
+
+TEK = """Model,DPO2014
+Firmware Version,1.44
+
+Point Format,Y,
+Horizontal Units,s,
+Horizontal Scale,0.4,
+Sample Interval,0.002,
+Record Length,120,
+Vertical Units,V,V
+,,
+Label,base,rel
+"""
+LECROY = (
+    "LECROYWR62Xi,62431,Waveform\nSegments,1,SegmentSize,120\nSegment,TrigTime,TimeSinceSegment1\n#1,12-Nov-2025 10:03:29,0\n"
+)
+KUKA = "; KUKA trace\n;channels: A1 A2\n\nName;Trace_7\nCycleTime [ms];2\n\n"
+LVM_TOP = (
+    "LabVIEW Measurement\t\nWriter_Version\t2\nReader_Version\t2\nSeparator\tTab\nDecimal_Separator\t.\nMulti_Headings\tYes\n"
+    "X_Columns\tOne\nTime_Pref\tRelative\nOperator\tlab\nDate\t2025/11/12\nTime\t10:03:29.5\n***End_of_Header***\t\n\t\n"
+)
+LVM_SEGMENT = (
+    "Channels\t2\t\t\nSamples\t120\t120\t\nDate\t2025/11/12\t2025/11/12\t\nTime\t10:03:29.5\t10:03:29.5\t\n"
+    "Y_Unit_Label\trad\trad\t\nX_Dimension\tTime\tTime\t\nX0\t0.0\t0.0\t\nDelta_X\t0.002\t0.002\t\n***End_of_Header***\t\t\t\n"
+    "X_Value\tA\tB\tComment\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("above", "separator", "names", "rate"),
+    [
+        (TEK + "TIME,CH1,CH2\n", ",", ("TIME", "CH1", "CH2"), 500.0),
+        (LECROY + "Time,Ampl1,Ampl2\n", ",", ("Time", "Ampl1", "Ampl2"), None),
+        ("Rigol\nt,CH1,CH2\n", ",", ("t", "CH1", "CH2"), None),
+        (KUKA + "Time_s;A1.ActPos;A2.ActPos\n", ";", ("Time_s", "A1.ActPos", "A2.ActPos"), 500.0),
+        (LVM_TOP + LVM_SEGMENT, "\t", ("X_Value", "A", "B"), 500.0),
+        ("Operator: M. Smith, lab 3\nSample rate: 500 Hz\nRig: no. 4\n\nt,x,z\n", ",", ("t", "x", "z"), 500.0),
+        ("% rig 4\n% t x z\n", " ", ("t", "x", "z"), None),
+        ("# t,x,z\n", ",", ("t", "x", "z"), None),
+        ("#t x z\n", " ", ("t", "x", "z"), None),
+        ("# rig\n#\n# t\tx\tz\n", "\t", ("t", "x", "z"), None),
+        ("// exported\n// t; x; z\n", ";", ("t", "x", "z"), None),
+        ("; exported\n; t, x, z\n", ",", ("t", "x", "z"), None),
+        ("# t,x,z\n", " ", ("t", "x", "z"), None),
+        ("Time (s)  Base (deg)  Rel (deg)\n", "\t", ("Time (s)", "Base (deg)", "Rel (deg)"), None),
+        ("t, x, z\n", " ", ("t", "x", "z"), None),
+        ("fs = 500\n[Data]\nt,x,z\n", ",", ("t", "x", "z"), 500.0),
+        ("t,x,z\n[Data]\n", ",", ("t", "x", "z"), None),
+        ("mass,stiffness,damping\n1.5,200,0.1\n\nt,x,z\n", ",", ("t", "x", "z"), None),
+        ("\n\n\nt,x,z\n", ",", ("t", "x", "z"), None),
+        ("x in mm is not used\nwhere the rig stood, and when\nt,x,z\n", ",", ("t", "x", "z"), None),
+    ],
+)
+def test_what_stands_above_a_table(tmp_path, above, separator, names, rate):
+    table = read(tmp_path, above + text(separator, names=()))
+    assert_good(table, names)
+    assert table.rate_hz == rate
+    assert table.first_line == above.count("\n") + 1
+    assert table.place(3) == f"row 4 (line {above.count(chr(10)) + 4})"
+
+
+def test_rigols_increment_stands_behind_the_names(tmp_path):
+    lines = ["X,CH1,CH2,Start,Increment,", "Sequence,Volt,Volt,-6.0e-2,2.0e-3,"]
+    lines += [f"{row},{x:.9g},{z:.9g},,," for row, (x, z) in enumerate(zip(X, Z, strict=True))]
+    table = read(tmp_path, "\n".join(lines) + "\n")
+    assert table.names == ["X", "CH1", "CH2"]
+    assert [column.unit for column in table.columns] == ["", "Volt", "Volt"]
+    assert table.rate_hz == pytest.approx(500.0)
+    np.testing.assert_allclose(table.columns[1].values, X)
+
+
+def test_a_labview_file_of_two_segments(tmp_path):
+    rows = text("\t", names=())
+    table = read(tmp_path, LVM_TOP + LVM_SEGMENT + rows + "\n" + LVM_SEGMENT + rows, "rec.lvm")
+    assert table.names == ["X_Value", "A", "B"]
+    np.testing.assert_array_equal(table.columns[0].values, [*T, *T])
+    assert any("comes again at line" in note for note in table.notes)
+
+
+def test_numbers_without_names_go_by_number(tmp_path):
+    table = read(tmp_path, text(names=()))
+    assert_good(table, ("column 1", "column 2", "column 3"))
+    assert table.details["header line"] == "none"
+    assert any("no line of names" in note for note in table.notes)
+
+
+@pytest.mark.parametrize("mark", ["#", "%", "//", ";"])
+def test_comments_and_blank_lines_between_rows(tmp_path, mark):
+    lines = text().splitlines()
+    lines = put(60, "")(put(40, f"{mark} noon, 12, 3")(lines))
+    table = read(tmp_path, "\n".join(lines) + "\n")
+    assert_good(table)
+    assert table.place(0) == "row 1 (line 2)"
+    assert table.place(ROWS - 1) == f"row {ROWS} (line {ROWS + 3})"
+
+
+@pytest.mark.parametrize(
+    "footer",
+    [
+        "End of data",
+        "\nSamples: 120",
+        "# end",
+        "\n\n\n",
+        "Total rows,120",
+        "Total,,12.5",
+        ",,\n,,\n",
+        "\nMean,0.1,0.2\nStd,0.1,0.2\n",
+    ],
+)
+def test_a_footer_is_passed_over(tmp_path, footer):
+    assert_good(read(tmp_path, text() + footer))
+    assert_good(read(tmp_path, text() + footer + "\n"))
+
+
+def test_a_header_that_comes_again_is_passed_over_and_said(tmp_path):
+    lines = text().splitlines()
+    table = read(tmp_path, "\n".join(put(51, lines[0])(lines)) + "\n")
+    assert_good(table)
+    assert any("comes again at line 51" in note for note in table.notes)
+
+
+@pytest.mark.parametrize("names", [("t", "x", "z", ""), ("t", "x", "z")])
+def test_separators_at_the_end_of_every_line(tmp_path, names):
+    body = text(names=()).replace("\n", ",\n")
+    assert_good(read(tmp_path, ",".join(names) + "\n" + body))
+    assert_good(read(tmp_path, ",".join(names) + "\n" + body.replace(",\n", ",,,\n")))
+
+
+@pytest.mark.parametrize(
+    ("number", "line", "fragment"),
+    [
+        (17, "0.03,0.1", "line 17: found 2 values, wanted 3 (t, x, z)"),
+        (17, "0.03,0.1,0.2,0.3", "line 17: found 4 values, wanted 3"),
+        (17, "logger restarted", "line 17: found 1 value"),
+        (100, "*** overrun ***", "line 100: found 1 value"),
+        (50, '0.1,"0.2,0.3', "line 50: found a quotation mark without an end"),
+    ],
+)
+def test_a_line_that_breaks_the_table_is_named(tmp_path, number, line, fragment):
+    with pytest.raises(BadInput, match=re.escape(fragment)):
+        read(tmp_path, "\n".join(put(number, line)(text().splitlines())) + "\n")
+
+
+def test_half_a_last_line_is_refused(tmp_path):
+    with pytest.raises(BadInput, match="line 122: found 2 of 3 values and then the end of the file, which looks half-written"):
+        read(tmp_path, text() + "0.240,0.1")
+
+
+def test_two_tables_are_refused(tmp_path):
+    with pytest.raises(BadInput, match="line 42: found a second table") as caught:
+        read(tmp_path, "\n".join([*text().splitlines()[:41], "a,b,c", *text(names=()).splitlines()]) + "\n")
+    assert "--skip 41" in str(caught.value)
+    assert_good(read_text(tmp_path / "rec.csv", skip=41), ("a", "b", "c"))
+
+
+def test_skip_passes_lines_over(tmp_path):
+    table = read(tmp_path, "gain,offset,serial\n1.02,0.5,17\n0.98,0.1,18\n" + text(), skip=3)
+    assert_good(table)
+    assert table.place(0) == "row 1 (line 5)"
+    with pytest.raises(BadInput, match="after the 500 lines that --skip passes over"):
+        read(tmp_path, text(), skip=500)
+
+
+# ---- Names and units ----
+
+
+@pytest.mark.parametrize(
+    ("rows", "names", "units"),
+    [
+        (["t,x,z", "s,deg,deg"], ("t", "x", "z"), ("s", "deg", "deg")),
+        (["t,x,z", "[s],[deg],[mrad]"], ("t", "x", "z"), ("s", "deg", "mrad")),
+        (["t,x,z", "(ms),(°),(°)"], ("t", "x", "z"), ("ms", "°", "°")),
+        (["t,x,z", "s,-,"], ("t", "x", "z"), ("s", "", "")),
+        (["s,deg,deg", "t,x,z"], ("t", "x", "z"), ("s", "deg", "deg")),
+        (["# t,x,z", "# s,deg,deg"], ("t", "x", "z"), ("s", "deg", "deg")),
+        (["Time [s],x (deg),z/rad"], ("Time [s]", "x (deg)", "z/rad"), ("s", "deg", "rad")),
+        (['"Time, s","Base, deg","Rel, deg"'], ("Time, s", "Base, deg", "Rel, deg"), ("s", "deg", "deg")),
+        (["t,x,x"], ("t", "x", "x"), ("", "", "")),
+        (["Clock,Base,Base", "Time,Pos,Pos"], ("Time", "Pos", "Pos"), ("", "", "")),
+        ([",Enc 1,Enc 2", "Time,Pos,Pos"], ("Time", "Enc 1/Pos", "Enc 2/Pos"), ("", "", "")),
+        (["Base,,Link", "Pos,Vel,Pos"], ("Base/Pos", "Base/Vel", "Link/Pos"), ("", "", "")),
+        ([",x,z"], ("column 1", "x", "z"), ("", "", "")),
+    ],
+)
+def test_names_units_and_groups(tmp_path, rows, names, units):
+    table = read(tmp_path, "\n".join(rows) + "\n" + text(names=()))
+    if rows[0].startswith("Clock"):
+        names = ("Clock/Time", "Base/Pos", "Base/Pos")
+    assert_good(table, names)
+    assert tuple(column.unit for column in table.columns) == units
+
+
+def test_the_numbers_that_r_puts_before_rows(tmp_path):
+    lines = text().splitlines()
+    numbered = [lines[0], *(f'"{number}",{line}' for number, line in enumerate(lines[1:], 1))]
+    assert_good(read(tmp_path, "\n".join(numbered) + "\n"), places=(1, 2, 3))
+
+
+def test_fewer_names_than_values_are_refused(tmp_path):
+    with pytest.raises(BadInput, match=r"line 2: found 3 values, wanted 2 \(t, x\), as many as line 1 has names"):
+        read(tmp_path, text(names=("t", "x")))
+
+
+# ---- Cells ----
+
+
+@pytest.mark.parametrize("word", ["", "NaN", "nan", "-", "--", "NULL", "#N/A", "N/A", "OVERFLOW", "null", "1.#QNAN", " "])
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_cells_without_a_number_are_not_a_number(tmp_path, word, separator):
+    rows = cells()
+    for row in (20, 21, 90):
+        rows[row][1] = word
+    table = read(tmp_path, "\n".join(separator.join(row) for row in [["t", "x", "z"], *rows]) + "\n")
+    expected = X.copy()
+    expected[[20, 21, 90]] = np.nan
+    np.testing.assert_array_equal(table.columns[1].values, expected)
+    np.testing.assert_array_equal(table.columns[2].values, Z)
+    assert any("line 22 and in 2 more rows" in note for note in table.notes) == (word.strip().lower() not in ("", "nan"))
+
+
+@pytest.mark.parametrize(
+    ("write", "unit"),
+    [
+        (lambda v: f"{v:.9E}", ""),
+        (lambda v: f"{v:.9E}".replace("E", "D"), ""),
+        (lambda v: f"{v:+.9f}", ""),
+        (lambda v: f" {v:.9f} ", ""),
+        (lambda v: f"'{v:.9f}'", ""),
+        (lambda v: f'="{v:.9f}"', ""),
+        (lambda v: f"{v:.9f}".replace("-", "\u2212"), ""),
+        (lambda v: f"{v:.9f} rad", "rad"),
+        (lambda v: f"{v:.9f}mm", "mm"),
+        (lambda v: f"{v:.9f}°", "°"),
+        (lambda v: f"{v:.9f}".replace("0.", "."), ""),
+    ],
+)
+def test_numbers_as_programs_write_them(tmp_path, write, unit):
+    rows = ["t;x;z", *(f"{t:.3f};{write(x)};{z:.12g}" for t, x, z in zip(T, X, Z, strict=True))]
+    table = read(tmp_path, "\n".join(rows) + "\n")
+    assert_good(table)
+    assert table.columns[1].unit == unit
+
+
+def test_infinity_truths_and_words(tmp_path):
+    rows = [f"{t:.3f},{'Infinity' if row == 5 else '1.5'},{('TRUE', 'FALSE')[row % 2]},{('run', 'stop')[row > 9]},{x}"
+            for row, (t, x) in enumerate(zip(T, X, strict=True))]  # fmt: skip
+    table = read(tmp_path, "\n".join(["t,limit,on,state,x", *rows]) + "\n")
+    assert table.columns[1].values[5] == np.inf
+    np.testing.assert_array_equal(table.columns[2].values[:4], [1, 0, 1, 0])
+    assert list(table.columns[3].values[8:12]) == ["run", "run", "stop", "stop"]
+    np.testing.assert_array_equal(table.columns[4].values, X)
+
+
+def test_units_that_change_from_cell_to_cell_are_no_numbers(tmp_path):
+    rows = [f"{t:.3f},{(f'{1e3 * x:.3f} mrad', f'{x:.6f} rad')[row % 2]}" for row, (t, x) in enumerate(zip(T, X, strict=True))]
+    assert read(tmp_path, "\n".join(["t,x", *rows])).columns[1].values.dtype.kind == "U"
+
+
+def test_underscores_are_no_digits(tmp_path):
+    rows = [f"{t:.3f},1_000" for t in T]
+    assert read(tmp_path, "\n".join(["t,x", *rows]) + "\n").columns[1].values.dtype.kind == "U"
+
+
+def test_stamps_of_time_stay_text(tmp_path):
+    rows = [f"2025-11-12 10:03:{29 + t:06.3f},{x},{z}" for t, x, z in zip(T, X, Z, strict=True)]
+    table = read(tmp_path, "\n".join(["stamp,x,z", *rows]) + "\n")
+    assert table.columns[0].values[1] == "2025-11-12 10:03:29.002"
+    np.testing.assert_array_equal(table.columns[1].values, X)
+    blanks = read(tmp_path, "\n".join(["date time x z", *(row.replace(",", " ") for row in rows)]) + "\n")
+    assert blanks.names == ["date", "time", "x", "z"]
+    np.testing.assert_array_equal(blanks.columns[3].values, Z)
+
+
+def test_long_counts_keep_every_digit(tmp_path):
+    stamps = 1762941809000000000 + np.arange(ROWS) * 20003
+    table = read(tmp_path, "\n".join(["stamp,x", *(f"{stamp},{x}" for stamp, x in zip(stamps, X, strict=True))]) + "\n")
+    assert list(table.columns[0].values.astype(np.int64)) == list(stamps)
+
+
+# ---- Rates stated beside the samples ----
+
+
+@pytest.mark.parametrize(
+    ("line", "rate"),
+    [
+        ("# Sample rate: 500 Hz", 500.0),
+        ("Sample Interval,0.002,,", 500.0),
+        ("Delta_X\t0.002\t0.002", 500.0),
+        ("# fs = 1000", 1000.0),
+        ("% Fs: 2 kHz", 2000.0),
+        ("Sampling Rate;1,5;kHz", 1500.0),
+        ("Sample Rate (kHz): 1", 1000.0),
+        ("Sampling period: 2 ms", 500.0),
+        ("dt=1e-3", 1000.0),
+        ("Abtastrate: 500 Hz", 500.0),
+        ("Sample time: 500 us", 2000.0),
+        ("sample rate [S/s]: 250", 250.0),
+        ("Excitation frequency: 3 Hz", None),
+        ("Date: 2025-11-12", None),
+        ("Sample rate: unknown", None),
+        ("Sample rate: 0 Hz", None),
+        ("Sampling: 2 ms", 500.0),
+        ("Rate of turn: 5", None),
+    ],
+)
+def test_rates_stated_beside_the_samples(tmp_path, line, rate):
+    table = read(tmp_path, f"{line}\nx,z,y\n" + text(names=()))
+    assert table.rate_hz == (None if rate is None else pytest.approx(rate))
+
+
+def test_two_rates_that_contradict_each_other_are_not_used(tmp_path):
+    table = read(tmp_path, "# Sample rate: 500 Hz\n# dt = 0.001\n" + text())
+    assert table.rate_hz is None
+    assert any("two rates are stated" in note for note in table.notes)
+
+
+def test_the_file_says_how_it_was_read(tmp_path):
+    table = read(tmp_path, TEK + text(";", mark=",", names=("TIME", "CH1", "CH2")))
+    assert table.details == {
+        "encoding": "utf-8",
+        "separator": "semicolon",
+        "decimal mark": "comma",
+        "header line": "12",
+        "first line of values": "13",
+        "lines passed over": "1 to 11",
+    }
+    assert any("lines 1 to 11 above the table are passed over" in note for note in table.notes)
