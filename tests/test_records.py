@@ -76,9 +76,9 @@ def test_a_torque_has_several_spellings(text, unit):
 
 def test_a_stated_unit_is_believed(tmp_path):
     table = motion()
-    path = write_table(tmp_path / "rec.csv", table | {"x": 200 * table["x"], "t": 100 * table["t"]})
-    assert read_record(path, units={"x": "rad", "t": "s"}).dt == pytest.approx(0.2)
-    with pytest.raises(BadInput, match="t looks like milliseconds"):
+    path = write_table(tmp_path / "rec.csv", table | {"x": 200 * table["x"], "t": 500 * table["t"]})
+    assert read_record(path, units={"x": "rad", "t": "s"}).dt == pytest.approx(1.0)
+    with pytest.raises(BadInput, match=r"looks like milliseconds \(1000 Hz\).*--unit t=ms, or --unit t=s"):
         read_record(path, units={"x": "rad"})
     with pytest.raises(BadInput, match="--unit x=deg"):
         read_record(path, units={"t": "s"})

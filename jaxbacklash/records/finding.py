@@ -32,6 +32,8 @@ class Finding:
         Rows (from 0) of the channel that are replaced by what its neighbours give, see `findings.mend.after`.
     left_out : int
         Rows at the beginning of the record that are left out.
+    otherwise : str
+        What to add to the command where it is right as it is; empty for "--accept KIND".
     """
 
     kind: str
@@ -43,11 +45,12 @@ class Finding:
     size: float | None = None
     bridged: tuple[int, ...] = ()
     left_out: int = 0
+    otherwise: str = ""
 
     def sentence(self, where: str) -> str:
         """The whole sentence, for the file called ``where``; one that refuses or asks says how to answer it."""
         ways = [self.remedy] if self.remedy else []
         if self.action != WARN:
-            ways.append(f"--accept {self.kind}{' if it is right as it is' if ways else ''}")
+            ways.append(f"{self.otherwise or f'--accept {self.kind}'}{' if it is right as it is' if ways else ''}")
         place = f"{where}, column {self.channel}" if self.channel else where
         return f"{place}: {self.found}{'; pass ' if ways else ''}{', or '.join(ways)}."

@@ -7,7 +7,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from jaxbacklash.errors import BadInput
+
 from .checks import number, wrong
+from .findings.stamps import ODD, time_unit
 
 RELATIVE = 1e-6
 """Times are uniform when none is further from an even grid than this fraction of a step."""
@@ -17,9 +20,6 @@ HARMLESS = 1e-3
 
 GAP = 1.5
 """A step of this many usual steps is called a gap, where such steps are rare."""
-
-SLOWEST_STEP_S = 0.05
-"""Longer steps are taken for a mistaken unit of time."""
 
 
 def uniform_grid(t: np.ndarray) -> np.ndarray | None:
@@ -32,7 +32,7 @@ def uniform_grid(t: np.ndarray) -> np.ndarray | None:
     The danger is a lost row that looks like rounding. A rounding finer than a thousandth of a step cannot hide one. A
     coarser one, up to half a step, is believed only when at least three steps differ from the usual one: rounding
     spaces its odd steps evenly, which three glitches would hardly do, while one or two may be anything. Rounding to
-    more than half a step cannot be told from lost rows at all.
+    more than half a step is believed where twenty steps and more are odd.
 
     Parameters
     ----------
@@ -62,7 +62,8 @@ def uniform_grid(t: np.ndarray) -> np.ndarray | None:
             continue
         usual = np.median(steps)
         odd = np.count_nonzero(np.abs(steps - usual) > unit / 4)
-        if unit <= HARMLESS * step or (unit <= step / 2 * (1 + RELATIVE) and odd >= 3):
+        # Stamps to a millisecond at 800 Hz: a coarse unit, but as many lost rows would lead away from the line.
+        if unit <= HARMLESS * step or (unit <= step / 2 * (1 + RELATIVE) and odd >= 3) or odd >= ODD:
             return t[0] + middle + step * rows
     return None
 
@@ -101,7 +102,7 @@ def increasing(t: np.ndarray, where: str) -> None:
 
 
 def in_seconds(t: np.ndarray, confirmed, where: str) -> None:
-    """Refuse milliseconds taken for seconds: 20 samples per second cannot show the motion of a loose joint.
+    """Refuse milliseconds taken for seconds: 20 samples per second cannot show the motion of most loose joints.
 
     Parameters
     ----------
@@ -109,16 +110,10 @@ def in_seconds(t: np.ndarray, confirmed, where: str) -> None:
     confirmed : collection of str
         Holds "t" when the user stated its unit, which is then believed.
     """
-    step = float(np.median(np.diff(t)))
-    if step < SLOWEST_STEP_S or "t" in confirmed:
+    if "t" in confirmed:
         return
-    unit = "ms" if step < 50 else "us" if step < 5e4 else "ns"
-    name = {"ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}[unit]
-    raise wrong(
-        f"{where}, column t",
-        f"a step of {number(step)}",
-        f"one under {SLOWEST_STEP_S} s; t looks like {name}, use --unit t={unit} (t=s if it truly is in seconds)",
-    )
+    for finding in time_unit(t):
+        raise BadInput(finding.sentence(where))
 
 
 def uniform(t: np.ndarray, where: str) -> np.ndarray:

@@ -52,7 +52,7 @@ def _nothing(values: np.ndarray, name: str, drive: str | None) -> list[Finding]:
     count = quantum(values)
     if span < (LEVELS - 0.5) * count:
         what = f"takes {round(span / count) + 1} values only{moved}: its answer is below its resolution of {count:.3g}"
-        return [Finding("no answer", REFUSE, name, what)]
+        return [Finding("no-answer", REFUSE, name, what)]
     some = values[:65536] - np.mean(values[:65536])
     power = float(np.einsum("i,i", some, some))
     if power == 0.0:
@@ -62,7 +62,7 @@ def _nothing(values: np.ndarray, name: str, drive: str | None) -> list[Finding]:
         if abs(float(np.einsum("i,i", some[lag:], some[:-lag]))) > WHITE * power / np.sqrt(some.size):
             return []
     what = f"shows white noise of {np.std(values):.3g} and nothing else{moved}: there is no answer to fit"
-    return [Finding("no answer", REFUSE, name, what)]
+    return [Finding("no-answer", REFUSE, name, what)]
 
 
 def _held_first(t: np.ndarray, values: np.ndarray, name: str) -> list[Finding]:
@@ -90,7 +90,7 @@ def _held_first(t: np.ndarray, values: np.ndarray, name: str) -> list[Finding]:
         f"stays at {base:.4g} up to row {release} ({t[release - 1]:.6g} s) before it swings: the link was held, and "
         "those rows are left out (--from 0 keeps them)"
     )
-    return [Finding("held first", WARN, name, what, rows=(0, release - 1), size=float(t[release - 1]), left_out=release)]
+    return [Finding("held-first", WARN, name, what, rows=(0, release - 1), size=float(t[release - 1]), left_out=release)]
 
 
 def _stale_first(values: np.ndarray, name: str) -> list[Finding]:
@@ -107,4 +107,4 @@ def _stale_first(values: np.ndarray, name: str) -> list[Finding]:
     if here < CORNER * max(elsewhere, SURPRISE_OF_NOISE * noise):
         return []
     what = f"repeats its first value up to row {last + 1} and then goes on at full speed; those rows are stale and left out"
-    return [Finding("stale first", WARN, name, what, rows=tuple(range(last + 1)), left_out=last + 1)]
+    return [Finding("stale-first", WARN, name, what, rows=tuple(range(last + 1)), left_out=last + 1)]

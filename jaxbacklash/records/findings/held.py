@@ -122,4 +122,4 @@ def held_rows(channels: Mapping[str, np.ndarray]) -> list[Finding]:
         f"{rows.size} stretches of up to {lengths[rows].max()} equal rows end in a jump, the first at row {first + 1}; "
         "samples look lost and filled with the last value"
     )
-    return [Finding("held rows", WARN, "", what, rows=(int(first),))]
+    return [Finding("held-rows", WARN, "", what, rows=(int(first),))]

@@ -78,7 +78,7 @@ def before(
     Returns
     -------
     t, channels, extras
-        Of shape (M,): where a channel of `despike` has a new value every k-th row only, those rows are kept, M = N / k. What stands
+        Of shape (M,): where a channel of `despike` has a new value every k-th row only, those are kept, M = N / k. What stands
         between them would bring noise that is not independent from sample to sample, and make every interval too narrow.
     """
     mended = dict(channels)

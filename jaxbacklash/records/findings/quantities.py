@@ -36,5 +36,15 @@ def quantities(channels: Mapping[str, np.ndarray], options: ReadOptions) -> list
                 f"holds whole numbers from {low:.0f} to {high:.0f}, counts of an encoder it seems, where radians are wanted (a "
                 f"turn over the counts of a turn: 2 pi / 4096 is {2 * np.pi / 4096:.6g})"
             )
-            found.append(Finding("counts", ASK, name, what, f"--scale {name}={2 * np.pi / 4096:.6g}", size=float(high - low)))
+            found.append(
+                Finding(
+                    "counts",
+                    ASK,
+                    name,
+                    what,
+                    f"--scale {name}={2 * np.pi / 4096:.6g}",
+                    size=float(high - low),
+                    otherwise=f"--unit {name}=rad",
+                )
+            )
     return found

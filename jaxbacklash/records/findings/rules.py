@@ -67,7 +67,7 @@ RULES: dict[str, Rule] = {
         ASK,
         "--despike",
     ),
-    "held rows": Rule("all channels stand still for 4 rows and then jump", "3 times the usual step", WARN),
+    "held-rows": Rule("all channels stand still for 4 rows and then jump", "3 times the usual step", WARN),
     "clipped": Rule("a sensor or a force at its limit", "3 runs of 5 equal values, 5 times as many as beside the limit", WARN),
     "gear": Rule(
         "y that follows x in slow motion at another factor than 1",
@@ -91,18 +91,18 @@ RULES: dict[str, Rule] = {
     ),
     "quantity": Rule("a position read from a column named as an acceleration or a rate of turn", "its name", ASK),
     "counts": Rule("whole numbers for radians or metres", "a range of 20", ASK, "--unit"),
-    "no answer": Rule(
+    "no-answer": Rule(
         "an observed channel of white noise or of three counts while the input moves",
         "5 standard errors of a correlation at 64 lags",
         REFUSE,
     ),
-    "held first": Rule(
+    "held-first": Rule(
         "a free decay whose link stands still, off its rest, before it is let go",
         "a twentieth of the way to rest, for longer than it then takes to swing back; those rows are left out",
         WARN,
         "--from",
     ),
-    "stale first": Rule(
+    "stale-first": Rule(
         "first rows that repeat one value until the observed channel goes on at full speed",
         "1.5 times the sharpest corner anywhere else, up to 12 rows; they are left out",
         WARN,
@@ -110,7 +110,7 @@ RULES: dict[str, Rule] = {
     ),
     "backwards": Rule("times that go back", "any", REFUSE, "--rate"),
     "bursts": Rule("times that repeat or come in bursts", "gaps of 3 mean steps, 4 of them; any repeat", ASK, "--rate"),
-    "time unit": Rule(
+    "time-unit": Rule(
         "milliseconds or finer where seconds are wanted",
         "a step of 0.05 s, where the record lasts half a second in either unit",
         ASK,

@@ -12,74 +12,122 @@ SLOW = 0.05
 """Steps [s] from which on milliseconds are thought of: 20 samples a second show few joints."""
 SHORTEST = 0.5
 """Seconds that a record lasts at least (`checks.MIN_SECONDS`): what would be shorter as milliseconds is not in those."""
+SLOWEST = 60.0
+"""Steps [s] that no record of a joint has, however long it lasts."""
 BURST = 3.0
-"""Usual steps that a gap between bursts is at least."""
+"""Mean steps that a gap between bursts is at least."""
+TINY, MANY = 0.3, 0.2
+"""Share of the mean step that a step within a burst stays under, and share of such steps that makes bursts."""
+FEW = 10
+"""Steps back, of as many usual steps each, up to which a file holds several recordings one after another."""
+AGAIN = ", as where one recording follows another in a file"
+ODD = 20
+"""Steps of another length from which on rounding explains them, where all times stay within one unit of a straight line: as many
+lost rows would have led away from it."""
 
 
 def stamps(t: np.ndarray) -> list[Finding]:
-    """What is odd in the times."""
-    if t.size < 8:
+    """What is odd in the times (N,), in s as far as their unit is known."""
+    if t.size < 8 or not np.isfinite(t).all():
         return []
     steps = np.diff(t)
     back = np.flatnonzero(steps < 0)
     if back.size:
         row = int(back[0])
         more = f", and {back.size - 1} more such rows" if back.size > 1 else ""
-        what = f"goes back from {t[row]:.9g} s at row {row + 1} to {t[row + 1]:.9g} s at row {row + 2}{more}"
-        return [Finding("backwards", REFUSE, "t", what, f"--rate {rate_of(t):.6g}", (row,))]
-    return [*_bursts(t, steps), *_unit(t, steps)]
+        what = f"goes back from {t[row]:.9g} at row {row + 1} to {t[row + 1]:.9g} at row {row + 2}{more}"
+        again = back.size <= FEW and bool(np.all(steps[back] < -FEW * np.median(np.abs(steps))))
+        remedy = f"--to {t[row]:.9g}" if again else f"--rate {_round(t):.6g}"
+        return [Finding("backwards", REFUSE, "t", f"{what}{AGAIN if again else ''}", remedy, (row,))]
+    return [*_bursts(t, steps), *time_unit(t)]
 
 
 def rate_of(t: np.ndarray) -> float:
-    """Samples per second by the honest count: of all rows over all time, gaps left out.
+    """Samples per second, by an honest count.
 
     The usual step is no measure where times are rounded: at 800 Hz and stamps to a millisecond most steps are 1 ms, and 1000 Hz
-    is wrong by a quarter. A gap is a step that is longer by more than the rounding and than all steps but a few.
+    is wrong by a quarter. Nor is the mean one where rows are missing. Rounding keeps all times within a unit of a straight line,
+    whose slope is then the rate; so does a line through bursts; else it is the mean of the steps that are near the usual one.
 
     Parameters
     ----------
-    t : array of shape (N,), s; may repeat, N >= 2
+    t : array of shape (N,), s; may repeat, N >= 3
 
     Returns
     -------
     float
         In Hz; infinite where no time passes.
+
+    Examples
+    --------
+    >>> round(rate_of(np.round(np.arange(1000) / 800.0, 3)), 1)
+    800.0
     """
-    steps = np.diff(np.sort(t))
+    t = np.sort(t)
+    steps = np.diff(t)
     mean = float(np.mean(steps))
-    gaps = steps > max(BURST * mean, 5 * float(np.quantile(steps, 0.95)))
-    used = float(np.sum(steps[~gaps]))
-    return float(np.count_nonzero(~gaps) / used) if used > 0 else np.inf
+    if mean == 0.0:
+        return np.inf
+    slope, off = _line(t)
+    usual = float(np.median(steps))
+    unit = float(steps.max() - steps.min())
+    odd = np.count_nonzero(np.abs(steps - usual) > unit / 4)
+    in_bursts = np.count_nonzero(steps < TINY * mean) > MANY * steps.size
+    if in_bursts or (odd >= ODD and off <= 0.55 * unit):
+        return 1.0 / slope
+    near = steps[(steps > usual / 2) & (steps < 1.5 * usual)]
+    return 1.0 / float(np.mean(near))
+
+
+def _line(t: np.ndarray) -> tuple[float, float]:
+    """Slope of the straight line through times by row, and how far they are off it at most."""
+    rows = np.arange(t.size) - (t.size - 1) / 2
+    since = t - t[0]
+    slope = float(np.sum(rows * since) / np.sum(rows * rows))
+    error = since - slope * rows
+    return slope, float(error.max() - error.min()) / 2
+
+
+def _round(t: np.ndarray) -> float:
+    """The rate of uneven stamps as a person would set it: the roundest one that they leave open."""
+    rate = rate_of(t)
+    if not np.isfinite(rate) or t[-1] <= t[0]:
+        return 1.0 / max(float(np.median(np.abs(np.diff(t)))), 1e-300)
+    leeway = 2 * _line(np.sort(t))[1] / (t.max() - t.min())
+    for digits in (1, 2, 3):
+        rounded = float(f"{rate:.{digits - 1}e}")
+        if abs(rounded / rate - 1.0) < leeway:
+            return rounded
+    return rate
 
 
 def _bursts(t: np.ndarray, steps: np.ndarray) -> list[Finding]:
     """Stamps given when a packet arrived, not when its samples were taken; and times that repeat."""
-    rate = rate_of(t)
+    mean = float(np.mean(steps))
     same = np.flatnonzero(steps == 0)
-    if not same.size:
-        usual, mean = float(np.median(steps)), float(np.mean(steps))
-        # Most steps tiny, all time in a few: rows come in packets.
-        if usual > 0.3 * mean or np.count_nonzero(steps > BURST * mean) < 4:
-            return []
-    long = np.flatnonzero(steps > BURST * max(float(np.median(steps)), float(np.mean(steps)) / BURST))
-    if long.size >= 4 and np.median(np.diff(long)) >= 2:
-        each = int(np.median(np.diff(long)))
-        what = f"comes in bursts of about {each} rows, as packets arrive; if the samples are even, {rate:.6g} Hz fits all of them"
+    in_packets = np.count_nonzero(steps < TINY * mean) > MANY * steps.size
+    if not same.size and not in_packets:
+        return []
+    rate = _round(t)
+    gaps = np.flatnonzero(steps > BURST * mean)
+    if in_packets and gaps.size >= 4:
+        each = int(np.median(np.diff(gaps)))
+        what = f"comes in bursts of about {each} rows, as packets arrive; if the samples are even, {rate:.6g} Hz fits them"
     else:
-        what = f"repeats at {listed_rows(same + 1)}; if the samples are even, {rate:.6g} Hz fits all of them"
-    return [Finding("bursts", ASK, "t", what, f"--rate {rate:.6g}", tuple(same.tolist()), rate)]
+        what = f"repeats at {listed_rows(same + 1)}; if the samples are even, {rate:.6g} Hz fits them"
+    return [Finding("bursts", ASK, "t", what, f"--rate {rate:.6g}", tuple((same + 1).tolist()), rate)]
 
 
-def _unit(t: np.ndarray, steps: np.ndarray) -> list[Finding]:
+def time_unit(t: np.ndarray) -> list[Finding]:
     """Milliseconds, microseconds or nanoseconds where seconds are wanted: asked wherever the record could be either."""
-    step = float(np.median(steps))
+    step = float(np.median(np.diff(t)))
     if step < SLOW:
         return []
     name, short, factor = next(
         unit for unit in (("milliseconds", "ms", 1e-3), ("microseconds", "us", 1e-6), ("nanoseconds", "ns", 1e-9))
         if step * unit[2] < SLOW or unit[1] == "ns"
     )  # fmt: skip
-    if (t[-1] - t[0]) * factor < SHORTEST * (1 - 1 / t.size) and step < 60.0:
+    if t.size * step * factor < SHORTEST * (1 - 1e-9) and step < SLOWEST:
         return []
     what = f"has a step of {step:.6g}, which looks like {name} ({1 / (step * factor):.6g} Hz) unless the record is that slow"
-    return [Finding("time unit", ASK, "t", what, f"--unit t={short} (t=s if it truly is in seconds)", size=factor)]
+    return [Finding("time-unit", ASK, "t", what, f"--unit t={short}", size=factor, otherwise="--unit t=s")]
