@@ -124,6 +124,10 @@ def _of_equal_width(texts: np.ndarray, match: re.Match) -> dict[str, np.ndarray]
             fields[f"{key}_width"] = np.array([len(match[key])])
     for key in ("sep", "month", "month2", "minus", "point", "half", "zone"):
         if match[key] is not None:
+            start, stop = match.span(key)
+            # The digits of a zone change where summer ends.
+            if (codes[:, start:stop] != codes[0, start:stop]).any():
+                return None
             fields[key] = np.array([match[key]])
     return fields
 

@@ -167,10 +167,8 @@ def _decimal(values: np.ndarray, first: float) -> np.ndarray:
         rounded = np.round(values, digits)
         known = np.isfinite(values)
         if np.all(np.abs(rounded - values)[known] <= np.spacing(np.abs(first))):
-            return (
-                np.rint((values - np.floor(first)) * 10**digits) / 10**digits
-                - round((first - np.floor(first)) * 10**digits) / 10**digits
-            )
+            whole, scale = np.floor(first), 10**digits
+            return (np.rint((values - whole) * scale) - np.rint((first - whole) * scale)) / scale
     return values - first
 
 
