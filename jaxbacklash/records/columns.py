@@ -1,76 +1,144 @@
-"""From the columns of a file to the channels of a record."""
+"""From the columns of a file to the channels of a record.
 
+A column becomes a channel where it has the channel's name ("x", or "x [deg]" with its unit), or where `--columns` says so.
+Nothing else is guessed at: what `roles` proposes stands in the refusal, ready to paste.
+"""
+
+from __future__ import annotations
+
+import dataclasses
 import difflib
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
+from jaxbacklash.errors import BadInput
+
 from .checks import CHANNELS, WANTED_CHANNELS, listed, wrong
+from .header_units import split_unit
+from .roles import columns_option, guess_roles, spec_of
+from .table import Column, Table
 
 
-def wanted_columns(mapping: Mapping[str, str]) -> set[str]:
-    """Names of the columns that become channels if the file has them; the others need not hold numbers."""
-    return {mapping.get(name, name) for name in ("t", *CHANNELS)}
+@dataclasses.dataclass(frozen=True, eq=False)
+class Picked:
+    """Columns by channel (with "t" where the file has times), all other columns, and sentences on what was taken for what."""
+
+    channels: dict[str, Column]
+    numbers: dict[str, int]
+    extras: dict[str, np.ndarray]
+    notes: tuple[str, ...]
 
 
-def pick(
-    table: Mapping[str, np.ndarray], mapping: Mapping[str, str], where: str
-) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+def pick(table: Table, mapping: Mapping[str, str], where: str, *, timed: bool = True) -> Picked:
     """Sort columns into channels and extras.
 
     Parameters
     ----------
-    table : mapping of arrays
-        The columns of the file, by name.
+    table : Table
     mapping : mapping of str
-        Column names by channel, from `--columns`. A channel not mapped is the column of its own name, unless that one
-        was mapped to another channel.
+        Columns by channel, from `--columns`: a name, or "#3" for the third. A channel not mapped is the column of its own name,
+        unless that one was mapped to another channel.
     where : str
         The file, for the sentence.
-
-    Returns
-    -------
-    channels, extras : dict of arrays
-        `channels` has "t". A column whose name is that of a channel taken from elsewhere becomes "NAME (unmapped)".
+    timed : bool
+        Whether a column of times is wanted; not where the rate is known.
 
     Raises
     ------
     BadInput
-        When a mapped column, the time or every motion is missing; says what was found and suggests near names.
+        When a mapped column, the time or every motion is missing; says which columns it may be, ready to paste.
     """
-    channels = {}
-    for name in ("t", *CHANNELS):
-        column = mapping.get(name, name)
-        if column in table and (name in mapping or column not in mapping.values()):
-            channels[name] = table[column]
-        elif name in mapping:
-            near = _near(column, table)
-            hint = f" (did you mean {near}?)" if near else ""
-            raise wrong(where, f'no column "{column}", which --columns names', f"one of {listed(table)}{hint}")
-    taken = set(mapping.values()) | (set(channels) - set(mapping))
-    if "t" not in channels:
-        raise wrong(where, f"the columns {listed(table)}", f"a time column t{_advice('t', table, taken)}")
-    if len(channels) == 1 and len(table) > 1:
-        others = [name for name in table if name not in taken]
-        raise wrong(where, f"t and the columns {listed(others)}", f"{WANTED_CHANNELS}{_advice('z', table, taken)}")
+    numbers = {channel: column_number(table, spec, where) for channel, spec in mapping.items()}
+    for channel in ("t", *CHANNELS):
+        if channel not in numbers:
+            found = next((n for n, name in enumerate(table.names) if name == channel and n not in numbers.values()), None)
+            if found is None:
+                found = _with_unit(table, channel, numbers)
+            if found is not None:
+                numbers[channel] = found
+    _complete(table, numbers, where, timed)
+    channels = {channel: table.columns[number] for channel, number in numbers.items()}
     extras = {
-        f"{column} (unmapped)" if column in ("t", *CHANNELS) else column: values
-        for column, values in table.items()
-        if column not in taken
+        f"{column.name} (unmapped)" if column.name in ("t", *CHANNELS) else column.name: column.values
+        for number, column in reversed(list(enumerate(table.columns)))
+        if number not in numbers.values()
     }
-    return channels, extras
+    return Picked(channels, numbers, dict(reversed(extras.items())), _notes(table, numbers))
 
 
-def _advice(channel: str, table: Iterable[str], taken: set[str]) -> str:
-    """The end of a sentence: how to name the column that holds a channel."""
-    near = _near(channel, [name for name in table if name not in taken])
-    example = f"{channel}={near}" if near else f"{channel}=NAME"
-    return f"; say which column it is with --columns {example}{'' if near is None else ' or the like'}"
+def column_number(table: Table, spec: str, where: str) -> int:
+    """The number (from 0) of the column that ``spec`` names.
+
+    Raises
+    ------
+    BadInput
+        When there is no such column; suggests near names.
+    """
+    names = table.names
+    if spec in names:
+        return names.index(spec)
+    if spec.startswith("#") and spec[1:].isdecimal():
+        number = int(spec[1:])
+        if not 1 <= number <= len(names):
+            raise wrong(where, f"no column {spec}, which --columns names", f"one of #1 to #{len(names)} ({listed(names)})")
+        return number - 1
+    ends = [number for number, name in enumerate(names) if spec in (split_unit(name)[0], name.rpartition("/")[2])]
+    if len(ends) == 1:
+        return ends[0]
+    near = _near(spec, names)
+    hint = f" (did you mean {spec_of(table, names.index(near))}?)" if near else ""
+    numbered = ", ".join(f"#{number} {name}" for number, name in enumerate(names[:12], 1))
+    more = f" and {len(names) - 12} more" if len(names) > 12 else ""
+    quoting = "; a name with a comma is written in quotes, as in 't=\"Time, s\"'" if any("," in name for name in names) else ""
+    raise wrong(where, f'no column "{spec}", which --columns names', f"one of {numbered or 'nothing'}{more}{hint}{quoting}")
 
 
-def _near(wanted: str, names: Iterable[str]) -> str | None:
+def _with_unit(table: Table, channel: str, taken: Mapping[str, int]) -> int | None:
+    """The one column whose name is that of the channel with a unit beside it."""
+    like = [n for n, name in enumerate(table.names) if n not in taken.values() and split_unit(name)[0] == channel]
+    return like[0] if len(like) == 1 else None
+
+
+def _complete(table: Table, numbers: Mapping[str, int], where: str, timed: bool) -> None:
+    """Refuse a table without times or without a motion, with the option that may be what is wanted."""
+    moves = {"z", "y"} & set(numbers) or {"x", "T"} <= set(numbers)
+    if ("t" in numbers or not timed) and moves:
+        return
+    named = f"the columns {listed(table.names)}"
+    missing = "a time column t" if timed and "t" not in numbers else f"{WANTED_CHANNELS} beside it"
+    roles = guess_roles(table)
+    option = columns_option(table, roles)
+    if timed and "t" not in numbers and "t" not in roles:
+        stated = f"{table.rate_hz:.9g}" if table.rate_hz else "HZ"
+        known = ", which the file states" if table.rate_hz else ", the samples per second"
+        option = f"{option} --rate {stated}".strip()
+        raise BadInput(f"{where}: found {named}, wanted {missing}, or the rate with --rate {stated}{known}.", remedy=_told(option))
+    if not {"z", "y"} & set(roles) and not {"x", "T"} <= set(roles):
+        raise wrong(where, named, f"{missing}; say which column is which with --columns CHANNEL=NAME")
+    raise BadInput(f"{where}: found {named}, wanted {missing}; if it is so say {option}.", remedy=option)
+
+
+def _told(option: str) -> str:
+    """An option as a remedy, unless something is left open in it."""
+    return "" if "HZ" in option else option
+
+
+def _notes(table: Table, numbers: Mapping[str, int]) -> tuple[str, ...]:
+    """What is said of a name that stands twice."""
+    notes = []
+    for channel, number in numbers.items():
+        name = table.columns[number].name
+        others = [n for n, other in enumerate(table.names) if other == name and n != number]
+        if others:
+            rest = " and ".join(f"#{n + 1}" for n in others)
+            notes.append(f'the name "{name}" stands more than once: column #{number + 1} is taken as {channel}, not {rest}')
+    return tuple(notes)
+
+
+def _near(wanted: str, names: list[str]) -> str | None:
     """The name most like the one wanted, if any is; for a channel's one letter, a name that begins with it."""
-    lower = {name.lower(): name for name in names}
+    lower = {name.lower(): name for name in reversed(names)}
     close = difflib.get_close_matches(wanted.lower(), lower, n=1)
     if close:
         return lower[close[0]]

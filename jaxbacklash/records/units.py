@@ -1,11 +1,11 @@
-"""Units and names as the command line states them: `--columns t=time_s`, `--unit x=deg`, `--scale F=35.15`."""
+"""Units of channels, as the command line and the headers of files spell them, and their factors to SI and radians."""
 
 import math
 from collections.abc import Iterable, Mapping
 
-from .checks import CHANNELS, listed, wrong
+from .checks import listed, wrong
 
-TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0}
+TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}
 ANGLE = {
     "rad": 1.0,
     "mrad": 1e-3,
@@ -14,11 +14,12 @@ ANGLE = {
     "arcmin": math.pi / 180 / 60,
     "arcsec": math.pi / 180 / 3600,
     "rev": 2 * math.pi,
+    "grad": math.pi / 200,
 }
-LENGTH = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "in": 0.0254}
+LENGTH = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "in": 0.0254}
 # The pound-force is exact by definition: 0.45359237 kg times standard gravity, 9.80665 m/s^2.
 FORCE = {"N": 1.0, "kN": 1e3, "lbf": 4.4482216152605, "kip": 4448.2216152605}
-TORQUE = {"N m": 1.0, "N mm": 1e-3, "kN m": 1e3, "lbf in": 4.4482216152605 * 0.0254}
+TORQUE = {"N m": 1.0, "N mm": 1e-3, "N cm": 1e-2, "mN m": 1e-3, "kN m": 1e3, "lbf in": 4.4482216152605 * 0.0254}
 
 MOTION = ANGLE | LENGTH
 FAMILIES = (TIME, ANGLE, LENGTH, FORCE, TORQUE)
@@ -29,82 +30,57 @@ UNITS: dict[str, dict[str, float]] = {
 }
 
 
-def parse_mapping(text: str | Iterable[str], option: str) -> dict[str, str]:
-    """The pairs of an option such as "t=time_s,x=enc1".
+SPELLINGS = {
+    "s": ("sec", "secs", "second", "seconds"),
+    "ms": ("msec", "millisecond", "milliseconds"),
+    "us": ("usec", "microsecond", "microseconds"),
+    "ns": ("nsec", "nanosecond", "nanoseconds"),
+    "min": ("minute", "minutes"),
+    "h": ("hour", "hours"),
+    "rad": ("rads", "radian", "radians"),
+    "deg": ("degs", "degree", "degrees", "°"),
+    "arcmin": ("′",),
+    "arcsec": ("″",),
+    "rev": ("revs", "turn", "turns", "revolution", "revolutions"),
+    "grad": ("gon",),
+    "m": ("meter", "meters", "metre", "metres"),
+    "mm": ("millimeter", "millimeters", "millimetre", "millimetres"),
+    "in": ("inch", "inches", '"'),
+    "N": ("newton", "newtons"),
+    "N m": ("newton-meter", "newtonmeter", "newtonmeters"),
+    "lbf": ("lb", "lbs"),
+    "lbf in": ("lb-in", "in-lb", "inlbf"),
+}
+"""How files and people write units beside the names of `UNITS`, in lower case."""
 
-    Parameters
-    ----------
-    text : str or iterable of str
-        As given; several texts (an option given more than once) are joined.
-    option : str
-        The option's name, for the sentence.
 
-    Returns
-    -------
-    dict of str
-        By channel, in the order given.
+def spelt(name: str, unit: str) -> str | None:
+    """The unit of a channel in the spelling of `UNITS`, None where it has no such unit.
 
-    Raises
-    ------
-    BadInput
-        When a pair has no "=", an empty side, a channel that does not exist or that came before.
+    "Nm", "N*m", "N-m" and "N.m" mean "N m", a micro sign means u, "degrees" and "°" mean "deg"; "DEG" is read, "MS" is not, since
+    capitals tell milli from mega.
     """
-    texts = [text] if isinstance(text, str) else list(text)
-    pairs: dict[str, str] = {}
-    for part in ",".join(texts).split(","):
-        name, equals, value = (piece.strip() for piece in part.partition("="))
-        if not (name and equals and value):
-            raise wrong(option, f'"{part.strip()}"', "pairs such as x=VALUE separated by commas")
-        if name not in UNITS:
-            raise wrong(option, f'the channel "{name}"', f"one of t, {listed(CHANNELS)}")
-        if name in pairs:
-            raise wrong(option, f"the channel {name} twice", "each at most once")
-        pairs[name] = value
-    return pairs
-
-
-def parse_columns(text: str | Iterable[str], option: str = "--columns") -> dict[str, str]:
-    """Column names by channel; a column may stand for one channel only. Raises `BadInput`."""
-    pairs = parse_mapping(text, option)
-    for column in pairs.values():
-        same = [other for other in pairs if pairs[other] == column]
-        if len(same) > 1:
-            raise wrong(option, f'the column "{column}" for {same[0]} and for {same[1]}', "one channel for it")
-    return pairs
-
-
-def parse_units(text: str | Iterable[str], option: str = "--unit") -> dict[str, str]:
-    """Units by channel, each spelt as in `UNITS`. Raises `BadInput` listing the units that the channel may have."""
-    return {name: known_unit(name, unit, option) for name, unit in parse_mapping(text, option).items()}
-
-
-def parse_scales(text: str | Iterable[str], option: str = "--scale") -> dict[str, float]:
-    """Factors by channel, finite and not zero. Raises `BadInput`."""
-    scales = {}
-    for name, value in parse_mapping(text, option).items():
-        try:
-            scales[name] = float(value)
-        except ValueError:
-            raise wrong(option, f'"{value}" for {name}', "a number") from None
-        if not math.isfinite(scales[name]) or scales[name] == 0:
-            raise wrong(option, f'"{value}" for {name}', "a finite number other than 0")
-    return scales
+    plain = unit.translate(str.maketrans("µμ", "uu", " *.·⋅-")).strip()
+    short = {each.replace(" ", ""): each for each in UNITS[name]}
+    if plain in short:
+        return short[plain]
+    words = {word.replace("-", ""): each for each in UNITS[name] for word in SPELLINGS.get(each, ())}
+    words |= {each.lower(): full for each, full in short.items() if len(each) > 2}
+    return words.get(plain.lower())
 
 
 def known_unit(name: str, unit: str, option: str = "--unit") -> str:
-    """The unit of a channel in the spelling of `UNITS`: "Nm", "N*m" and "N.m" mean "N m", a micro sign means u.
+    """The unit of a channel in the spelling of `UNITS`; see `spelt`.
 
     Raises
     ------
     BadInput
         When the channel has no such unit; lists those it may have.
     """
-    allowed = UNITS[name]
-    spellings = {each.replace(" ", ""): each for each in allowed}
-    plain = unit.translate(str.maketrans("µμ", "uu", " *.·"))
-    if plain not in spellings:
-        raise wrong(option, f'the unit "{unit}" for {name}', f"one of {listed(allowed, limit=len(allowed))}")
-    return spellings[plain]
+    known = spelt(name, unit)
+    if known is None:
+        raise wrong(option, f'the unit "{unit}" for {name}', f"one of {listed(UNITS[name], limit=len(UNITS[name]))}")
+    return known
 
 
 def factors(

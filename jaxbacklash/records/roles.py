@@ -1,0 +1,126 @@
+"""Which column may hold which channel: a proposal for a person to check, never taken without being asked for.
+
+`columns.pick` puts it into its refusals and `look` into the command to go on with.
+"""
+
+from __future__ import annotations
+
+import shlex
+
+import numpy as np
+
+from .header_units import split_unit
+from .table import Column, Table
+
+NAMES: dict[str, tuple[str, ...]] = {
+    "t": ("t", "time", "timestamp", "time stamp", "elapsed", "zeit", "temps", "tiempo", "seconds", "sec", "datetime", "clock"),
+    "x": ("x", "base", "input", "motor", "drive", "shaker", "platform", "phi", "enc1", "encoder1", "ch1", "channel 1", "a0", "ai0"),
+    "z": ("z", "relative", "rel", "difference", "diff", "play", "ch2", "channel 2", "enc2", "encoder2", "ai1", "a1"),
+    "y": ("y", "link", "output", "load", "arm", "absolute", "abs", "theta", "position", "pos", "angle"),
+    "F": ("F", "force", "torque", "load cell"),
+    "T": ("T", "transmitted"),
+}
+"""Names by channel, the likelier first; compared in lower case without what is in brackets. "F" and "T" stand for themselves."""
+
+FOLLOWS = 0.7
+"""Correlation with x above which a motion is that of the link against the ground (y) rather than against the base (z)."""
+
+
+def numeric(column: Column) -> bool:
+    """Whether a column holds numbers that change."""
+    values = column.values
+    if values.dtype.kind != "f":
+        return False
+    known = values[np.isfinite(values)]
+    return known.size > 1 and bool(known.min() < known.max())
+
+
+def _likeness(channel: str, column: Column) -> int:
+    """How well a column's name fits a channel: 3 the same, 2 a usual name, 1 begins with one, 0 not at all."""
+    bare, _ = split_unit(column.name.rpartition("/")[2])
+    if bare == channel:
+        return 3
+    lower = " ".join(bare.lower().replace("_", " ").split())
+    if lower in NAMES[channel][1:]:
+        return 2
+    words = [name for name in NAMES[channel][1:] if len(name) > 2]
+    return 1 if any(lower.startswith(word) or lower.endswith(word) for word in words) else 0
+
+
+def _is_time(column: Column) -> bool:
+    """Whether the values of a column of numbers only grow."""
+    values = column.values
+    return values.dtype.kind == "f" and values.size > 2 and bool(np.all(np.diff(values[np.isfinite(values)]) > 0))
+
+
+def guess_roles(table: Table) -> dict[str, int]:
+    """Numbers of the columns (from 0) that may hold t and the channels of one experiment.
+
+    Names decide first. Where they do not say what moves, the columns of numbers that change are taken in their order: the first
+    as x, the second as y where it follows x and as z where it does not.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from jaxbacklash.records.table import Column, Table
+    >>> time = Column("Time [s]", np.arange(9.0), "s")
+    >>> base, link = Column("Base", np.sin(time.values)), Column("Rel", np.cos(3 * time.values))
+    >>> guess_roles(Table((time, base, link), "csv"))
+    {'t': 0, 'x': 1, 'z': 2}
+    """
+    found: dict[str, int] = {}
+    for level in (3, 2, 1):
+        for channel in NAMES:
+            for number, column in enumerate(table.columns):
+                if channel in found or number in found.values() or _likeness(channel, column) != level:
+                    continue
+                if channel == "t" or numeric(column):
+                    found[channel] = number
+    if "t" not in found:
+        times = [number for number, column in enumerate(table.columns) if number not in found.values() and _is_time(column)]
+        found |= {"t": times[0]} if times else {}
+    moves = {channel for channel in found if channel in ("z", "y")}
+    rest = [n for n, column in enumerate(table.columns) if n not in found.values() and numeric(column) and not _is_time(column)]
+    if not moves and "T" not in found and rest:
+        if "x" not in found and "F" not in found and len(rest) > 1:
+            found["x"] = rest.pop(0)
+        found[_motion(table, found, rest[0])] = rest[0]
+    elif moves and "x" not in found and "F" not in found and rest:
+        found["x"] = rest[0]
+    return dict(sorted(found.items(), key=lambda item: list(NAMES).index(item[0])))
+
+
+def _motion(table: Table, found: dict[str, int], number: int) -> str:
+    """Whether a motion looks like y or like z beside x."""
+    if "x" not in found:
+        return "y" if "F" in found else "z"
+    x, motion = table.columns[found["x"]].values, table.columns[number].values
+    if x.size != motion.size:
+        return "z"
+    both = np.isfinite(x) & np.isfinite(motion)
+    spread = np.std(x[both]) * np.std(motion[both]) if both.any() else 0.0
+    together = np.mean((x[both] - x[both].mean()) * (motion[both] - motion[both].mean())) / spread if spread else 0.0
+    return "y" if abs(together) > FOLLOWS else "z"
+
+
+def spec_of(table: Table, number: int) -> str:
+    """How `--columns` names a column: by its name, in quotes where that holds a comma, by number where it cannot be written."""
+    name = table.columns[number].name
+    if table.names.count(name) > 1 or name.startswith("#") or not name.isprintable() or any(mark in name for mark in "\"'=`!\\"):
+        return f"#{number + 1}"
+    return f'"{name}"' if "," in name else name
+
+
+def columns_option(table: Table, roles: dict[str, int]) -> str:
+    """The option that says which column is which, quoted for a shell; empty where every channel's column has its name.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from jaxbacklash.records.table import Column, Table
+    >>> columns_option(Table((Column("Time, s", np.arange(3.0)), Column("x", np.arange(3.0))), "csv"), {"t": 0, "x": 1})
+    '--columns \\'t="Time, s"\\''
+    """
+    told = {channel: spec_of(table, number) for channel, number in roles.items()}
+    needed = [f"{channel}={spec}" for channel, spec in told.items() if spec != channel]
+    return f"--columns {shlex.quote(','.join(needed))}" if needed else ""
