@@ -17,6 +17,7 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand
 
+from .commands.reading import AS_IT_IS, Reading, reads
 from .errors import BadInput
 
 app = typer.Typer(
@@ -59,11 +60,6 @@ def there(found: Any) -> Any:
     return found
 
 
-Columns = Annotated[list[str] | None, typer.Option("--columns", help="Other column names: t=time_s,x=enc1,z=enc2")]
-Unit = Annotated[list[str] | None, typer.Option("--unit", help="Convert a channel to SI: x=deg or x=deg,t=ms")]
-Scale = Annotated[list[str] | None, typer.Option("--scale", help="Multiply a channel: F=35.15")]
-Resample = Annotated[bool, typer.Option("--resample", help="Bring uneven times to an even grid, at the record's own rate")]
-ResampleRate = Annotated[float | None, typer.Option("--resample-rate", help="The same at this rate [Hz]")]
 Inertia = Annotated[
     float | None,
     typer.Option("--inertia", help="Inertia of the link about its joint [kg m^2; kg]; without it values are per unit inertia"),
@@ -82,6 +78,7 @@ Heldout = Annotated[
 @computes(
     epilog="Example: jaxbacklash fit run1.csv --inertia 3.16 --columns x=enc1,z=enc2 --unit x=deg,z=deg --out fit1"
 )
+@reads
 def fit(
     records: Annotated[
         list[Path], typer.Argument(callback=there, help="One or more records: CSV, npz or mat; see the README for columns")
@@ -93,11 +90,7 @@ def fit(
     heldout: Heldout = None,
     out: Out = None,
     json: Json = False,
-    columns: Columns = None,
-    unit: Unit = None,
-    scale: Scale = None,
-    resample: Resample = False,
-    resample_rate: ResampleRate = None,
+    reading: Reading = AS_IT_IS,
     window: Window = 0.2,
     starts: Annotated[int, typer.Option("--starts", help="How many starting points are tried")] = 4,
     profile: Annotated[bool, typer.Option("--profile", help="Intervals from the profile likelihood (slower)")] = False,
@@ -106,10 +99,9 @@ def fit(
 ) -> None:
     """Fit backlash, stiffness and damping (and effects you name) to one or more records."""
     from .commands import fit as command
-    from .commands.common import Reading, load_laws
+    from .commands.common import load_laws
 
     load_laws(laws)
-    reading = Reading(columns, unit, scale, resample_rate or resample)
     command.run(
         records, inertia=inertia, model=model, effects=effects, heldout=heldout, out=out, as_json=json,
         reading=reading, window=window, starts=starts, profile=profile,
@@ -118,27 +110,23 @@ def fit(
 
 
 @computes(epilog="Example: jaxbacklash compare fit1/model.toml run2.csv --out compare2")
+@reads
 def compare(
     model: Annotated[Path, typer.Argument(help="A model file (TOML), as written by fit")],
     record: Annotated[Path, typer.Argument(callback=there, help="A record")],
     laws: Laws = None,
     out: Out = None,
     json: Json = False,
-    columns: Columns = None,
-    unit: Unit = None,
-    scale: Scale = None,
-    resample: Resample = False,
-    resample_rate: ResampleRate = None,
+    reading: Reading = AS_IT_IS,
     window: Window = 0.2,
     translation: Translation = False,
     seed: Seed = 0,
 ) -> None:
     """Compare a model with a record it may never have seen: where does it fail, and by how many noises?"""
     from .commands import compare as command
-    from .commands.common import Reading, load_laws
+    from .commands.common import load_laws
 
     load_laws(laws)
-    reading = Reading(columns, unit, scale, resample_rate or resample)
     command.run(
         model, record, out=out, as_json=json, reading=reading,
         window=window, translational=translation,
@@ -146,6 +134,7 @@ def compare(
 
 
 @computes(epilog="Example: jaxbacklash diagnose run1.csv --inertia 3.16 --out why1")
+@reads
 def diagnose(
     record: Annotated[Path, typer.Argument(callback=there, help="A record: CSV, npz or mat")],
     inertia: Inertia = None,
@@ -154,11 +143,7 @@ def diagnose(
     laws: Laws = None,
     out: Out = None,
     json: Json = False,
-    columns: Columns = None,
-    unit: Unit = None,
-    scale: Scale = None,
-    resample: Resample = False,
-    resample_rate: ResampleRate = None,
+    reading: Reading = AS_IT_IS,
     window: Window = 0.2,
     starts: Annotated[int, typer.Option("--starts", help="How many starting points are tried")] = 4,
     translation: Translation = False,
@@ -166,10 +151,9 @@ def diagnose(
 ) -> None:
     """Fit a model, say where it fails, and show the torque it misses and what that depends on."""
     from .commands import diagnose as command
-    from .commands.common import Reading, load_laws
+    from .commands.common import load_laws
 
     load_laws(laws)
-    reading = Reading(columns, unit, scale, resample_rate or resample)
     command.run(
         record, inertia=inertia, model=model, effects=effects, out=out, as_json=json,
         reading=reading, window=window, starts=starts, translational=translation, seed=seed,
@@ -177,6 +161,7 @@ def diagnose(
 
 
 @computes(epilog="Example: jaxbacklash refine run1.csv --heldout run2.csv --inertia 3.16 --out found1")
+@reads
 def refine(
     record: Annotated[Path, typer.Argument(callback=there, help="A record: CSV, npz or mat")],
     heldout: Heldout = None,
@@ -185,21 +170,16 @@ def refine(
     laws: Laws = None,
     out: Out = None,
     json: Json = False,
-    columns: Columns = None,
-    unit: Unit = None,
-    scale: Scale = None,
-    resample: Resample = False,
-    resample_rate: ResampleRate = None,
+    reading: Reading = AS_IT_IS,
     window: Window = 0.2,
     translation: Translation = False,
     seed: Seed = 0,
 ) -> None:
     """Find the effects a record needs beyond the base model, add them one by one, and say what is left."""
     from .commands import refine as command
-    from .commands.common import Reading, load_laws
+    from .commands.common import load_laws
 
     load_laws(laws)
-    reading = Reading(columns, unit, scale, resample_rate or resample)
     command.run(
         record, heldout=heldout, inertia=inertia, model=model, out=out, as_json=json,
         reading=reading, window=window, translational=translation, seed=seed,
@@ -207,6 +187,7 @@ def refine(
 
 
 @computes(epilog="Example: jaxbacklash skeleton sweep1.csv --inertia 3.16 --out skeleton1")
+@reads
 def skeleton(
     record: Annotated[
         Path, typer.Argument(callback=there, help="A record of a sweep, a steady or modulated sine, or a free decay")
@@ -215,25 +196,20 @@ def skeleton(
     gravity: Annotated[float, typer.Option("--gravity", help="m g L / J of the link [1/s^2], positive upright")] = 0.0,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for result.json and report.html")] = None,
     json: Json = False,
-    columns: Columns = None,
-    unit: Unit = None,
-    scale: Scale = None,
-    resample: Resample = False,
-    resample_rate: ResampleRate = None,
+    reading: Reading = AS_IT_IS,
     translation: Translation = False,
     seed: Seed = 0,
 ) -> None:
     """Play, stiffness and damping from envelopes and phases: Hilbert transform and wavelet, which stand beside the fit."""
     from .commands import skeleton as command
-    from .commands.common import Reading
 
-    reading = Reading(columns, unit, scale, resample_rate or resample)
     command.run(
         record, inertia=inertia, gravity=gravity, out=out, as_json=json, reading=reading, translational=translation,
     )  # fmt: skip
 
 
 @computes(epilog="Example: jaxbacklash chaos run1.csv --channel z --out chaos1")
+@reads
 def chaos(
     record: Annotated[
         Path, typer.Argument(callback=there, help="A table with even times and the channel to judge: CSV, npz or mat")
@@ -241,12 +217,7 @@ def chaos(
     channel: Annotated[str | None, typer.Option("--channel", help="The channel or column to judge; default z, else y")] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for result.json and report.html")] = None,
     json: Json = False,
-    columns: Columns = None,
-    unit: Unit = None,
-    scale: Scale = None,
-    resample: Resample = False,
-    resample_rate: ResampleRate = None,
-    rate: Annotated[float | None, typer.Option("--rate", help="Samples per second of a file without a time column [Hz]")] = None,
+    reading: Reading = AS_IT_IS,
     surrogates: Annotated[str, typer.Option("--surrogates", help="Kind of surrogates: iaaft, aaft or fourier")] = "iaaft",
     count: Annotated[int, typer.Option("--surrogate-count", help="How many surrogates; 39 reach p = 0.025")] = 39,
     clean: Annotated[bool, typer.Option("--clean/--no-clean", help="Take noise off as well, for dimension and exponent")] = True,
@@ -254,12 +225,10 @@ def chaos(
 ) -> None:
     """Is a measured series chaotic, how much, and why does it look so? Verdict, exponent with interval, pictures."""
     from .commands import chaos as command
-    from .commands.common import Reading
 
-    reading = Reading(columns, unit, scale, resample_rate or resample)
     command.run(
         record, channel=channel, out=out, as_json=json,
-        reading=reading, rate=rate, surrogates=surrogates, count=count, clean=clean, seed=seed,
+        reading=reading, surrogates=surrogates, count=count, clean=clean, seed=seed,
     )  # fmt: skip
 
 

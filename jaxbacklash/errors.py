@@ -4,8 +4,8 @@
 class BadInput(ValueError):
     """Input that cannot be used: one sentence says where, what was found and what is wanted (exit code 2).
 
-    ``remedy`` is what to add to the command so that it goes on, quoted for a shell; empty where only the user can know. The command
-    line shows the whole command with it.
+    ``remedy`` is what to add to the command so that it goes on, quoted for a shell; empty where only the user can know. The
+    command line shows the whole command with it.
     """
 
     def __init__(self, sentence: str = "", *, remedy: str = "") -> None:

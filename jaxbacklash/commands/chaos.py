@@ -13,7 +13,8 @@ from ..errors import BadInput
 from ..records import MeasuredSeries
 from ..report.chaos_result import chaos_json
 from ..timeseries import chaos
-from .common import Reading, json_text, out_folder, progress, write_text
+from .common import json_text, out_folder, progress, write_text
+from .reading import Reading
 
 DRIVES = {"x": "base motion", "F": "force"}
 
@@ -25,14 +26,13 @@ def run(
     out: Path | None,
     as_json: bool,
     reading: Reading,
-    rate: float | None,
     surrogates: str,
     count: int,
     clean: bool,
     seed: int,
 ) -> None:
     """Read one channel, judge it, print; write the result and the report when a folder is given."""
-    source = reading.series(path, channel, rate)
+    source = reading.series(path, channel)
     folder = out_folder(out)
     with progress(as_json) as tell:
         try:

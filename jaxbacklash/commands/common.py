@@ -7,7 +7,6 @@ import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from threading import Thread
@@ -15,44 +14,9 @@ from typing import Any
 
 from ..errors import BadInput
 from ..model_file import load_model
-from ..records import (
-    MeasuredSeries,
-    Record,
-    parse_columns,
-    parse_scales,
-    parse_units,
-    read_record,
-    read_series,
-)
 from ..system import System
 from ..whole_file import write_whole
 from .laws import load_laws as load_laws
-
-
-@dataclass(frozen=True)
-class Reading:
-    """How the user wants files read: the mappings as they were typed; ``resample`` True means at a record's own median rate."""
-
-    columns: list[str] | None = None
-    unit: list[str] | None = None
-    scale: list[str] | None = None
-    resample: float | bool = False
-
-    def record(self, path: Path) -> Record:
-        """A record."""
-        return read_record(path, **self._options())
-
-    def series(self, path: Path, channel: str | None, rate: float | None) -> MeasuredSeries:
-        """One channel of a table."""
-        return read_series(path, channel, rate=rate, **self._options())
-
-    def _options(self) -> dict[str, Any]:
-        return {
-            "columns": parse_columns(self.columns) if self.columns else None,
-            "units": parse_units(self.unit) if self.unit else None,
-            "scales": parse_scales(self.scale) if self.scale else None,
-            "resample": self.resample or None,
-        }
 
 
 def model_of_file(model: str, inertia: float | None) -> System | None:

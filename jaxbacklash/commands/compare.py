@@ -10,7 +10,8 @@ from .. import __version__
 from ..fitting import compare as compare_records
 from ..model_file import dump_model, load_model
 from ..report.result import comparison_json
-from .common import Reading, check_window, json_text, out_folder, progress, write_text
+from .common import check_window, json_text, out_folder, progress, write_text
+from .reading import Reading
 
 
 def run(

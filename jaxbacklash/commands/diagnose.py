@@ -17,7 +17,8 @@ from ..fitting.setup import add_effects
 from ..model_file import dump_model
 from ..report.refine_result import candidates_json
 from ..report.result import as_json as result_of
-from .common import Reading, check_window, json_text, model_of_file, names, out_folder, progress, write_text
+from .common import check_window, json_text, model_of_file, names, out_folder, progress, write_text
+from .reading import Reading
 
 
 def run(

@@ -15,7 +15,8 @@ from ..fitting import fit as fit_records
 from ..fitting.setup import add_effects
 from ..model_file import dump_model
 from ..report.result import as_json as result_of
-from .common import Reading, check_window, json_text, model_of_file, names, out_folder, progress, write_text
+from .common import check_window, json_text, model_of_file, names, out_folder, progress, write_text
+from .reading import Reading
 
 
 def run(

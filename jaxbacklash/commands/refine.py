@@ -18,7 +18,8 @@ from ..errors import NoAnswer
 from ..model_file import dump_model
 from ..report.refine_result import other_methods, refinement_json
 from ..system import System
-from .common import Reading, check_window, json_text, model_of_file, out_folder, progress, write_text
+from .common import check_window, json_text, model_of_file, out_folder, progress, write_text
+from .reading import Reading
 
 WORTH_A_TABLE = 0.3
 """Share of the missing torque that a table must predict out of sample before it is offered as a stopgap."""

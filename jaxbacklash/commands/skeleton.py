@@ -9,7 +9,8 @@ from pathlib import Path
 from .. import __version__
 from ..report.skeleton_result import skeletons_json
 from ..skeletons import skeleton
-from .common import Reading, json_text, out_folder, progress, write_text
+from .common import json_text, out_folder, progress, write_text
+from .reading import Reading
 
 
 def run(

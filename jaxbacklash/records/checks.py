@@ -4,6 +4,8 @@ A check takes arrays and `where`, the file as the user named it, and raises `Bad
 concern the times alone are in `time_axis`; what is merely odd is in `suspicions`.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from jaxbacklash.errors import BadInput
@@ -66,13 +68,21 @@ def real_vector(values, name: str, where: str) -> np.ndarray:
     return np.ascontiguousarray(values, dtype=np.float64)
 
 
-def finite(values: np.ndarray, name: str, where: str) -> None:
-    """Refuse NaN and infinity, naming the first row (counted from 1) that has one."""
+def _row(row: int) -> str:
+    return f"row {row + 1}"
+
+
+def finite(values: np.ndarray, name: str, where: str, place: Callable[[int], str] = _row) -> None:
+    """Refuse NaN and infinity, naming the first row that has one; ``place`` says how a row (from 0) is named."""
     bad = np.flatnonzero(~np.isfinite(values))
-    if bad.size:
-        more = f" ({bad.size} such rows)" if bad.size > 1 else ""
-        found = f"{values[bad[0]]} at row {bad[0] + 1}{more}"
-        raise wrong(f"{where}, column {name}", found, "a finite number in every row")
+    if not bad.size:
+        return
+    more = f" ({bad.size} such rows)" if bad.size > 1 else ""
+    missing = bool(np.isnan(values[bad]).all())
+    found = f"{'no number' if missing else values[bad[0]]} at {place(int(bad[0]))}{more}"
+    bridge = "; short runs are bridged with --resample" if missing and name != "t" else ""
+    sentence = f"{where}, column {name}: found {found}, wanted a finite number in every row{bridge}."
+    raise BadInput(sentence, remedy="--resample" if bridge else "")
 
 
 def same_length(values: np.ndarray, name: str, t: np.ndarray, where: str) -> None:

@@ -113,7 +113,8 @@ def _complete(table: Table, numbers: Mapping[str, int], where: str, timed: bool)
         stated = f"{table.rate_hz:.9g}" if table.rate_hz else "HZ"
         known = ", which the file states" if table.rate_hz else ", the samples per second"
         option = f"{option} --rate {stated}".strip()
-        raise BadInput(f"{where}: found {named}, wanted {missing}, or the rate with --rate {stated}{known}.", remedy=_told(option))
+        sentence = f"{where}: found {named}, wanted {missing}, or the rate with --rate {stated}{known}."
+        raise BadInput(sentence, remedy=_told(option))
     if not {"z", "y"} & set(roles) and not {"x", "T"} <= set(roles):
         raise wrong(where, named, f"{missing}; say which column is which with --columns CHANNEL=NAME")
     raise BadInput(f"{where}: found {named}, wanted {missing}; if it is so say {option}.", remedy=option)

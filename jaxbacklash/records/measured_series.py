@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import warnings
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
@@ -11,8 +12,16 @@ import numpy as np
 
 from . import checks, time_axis
 from .checks import listed, number, wrong
-from .reader import _read_table
+from .clocks import times_of
+from .columns import Picked, column_number
+from .conversion import numbers_of, stated_units
+from .files import read_table
+from .findings import mended
+from .header_units import split_unit
+from .options import NONE, ReadOptions
 from .resample import resampled
+from .roles import guess_roles
+from .table import Table
 from .units import base_unit, factors
 
 USUAL = ("z", "y", "T", "x", "F")
@@ -64,10 +73,10 @@ def read_series(
     Parameters
     ----------
     path : str or path
-        A .csv, .txt, .dat, .tsv, .npz or .mat file.
+        As `read_record` takes it.
     channel : str, optional
-        A channel (z, y, x, F, T) or the name of any column. Without it the first of z, y, T, x, F that the file has, or its
-        only column beside t.
+        A channel (z, y, x, F, T), the name of any column, or "#3" for the third. Without it the first of z, y, T, x, F that the
+        file has, or its only column beside t.
     columns, units, scales, resample
         As `read_record` takes them.
     rate : float, optional
@@ -82,53 +91,83 @@ def read_series(
     BadInput
         There is no such file or column, or the times are not even.
     """
-    columns, units, scales, where = columns or {}, units or {}, scales or {}, str(path)
-    named = {columns.get(name, name) for name in ("t", *checks.CHANNELS, *([channel] if channel else []))}
-    table = dict(_read_table(Path(path), named))
-    for column in columns.values():
-        if column not in table:
-            raise wrong(where, f'no column "{column}", which --columns names', f"one of {listed(table)}")
-    # A mapped channel goes by its channel's name; its column's own name leads to it too.
-    known = {**table, **{name: table[column] for name, column in columns.items()}}
-    name = channel or _usual(known, columns, where)
-    if name not in known:
-        raise wrong(where, f'no column "{name}", which --channel names', f"one of {listed(table)}")
-    found = {name: checks.real_vector(known[name], name, where)}
-    driven = next((one for one in ("x", "F") if one in known and one != name and columns.get(one, one) != name), None)
-    if driven is not None:
-        found[driven] = checks.real_vector(known[driven], driven, where)
-    t = _times(known, rate, found[name].size, where)
-    scaled = factors(units, scales, {**found, "t": t}, where)
-    t = t * scaled.pop("t", 1.0)
-    found = {one: values * scaled.get(one, 1.0) for one, values in found.items()}
+    options = ReadOptions(columns or NONE, units or NONE, scales or NONE, resample, rate)
+    return series_of(read_table(Path(path), options), channel, options, str(path))
+
+
+def series_of(table: Table, channel: str | None, options: ReadOptions, where: str) -> MeasuredSeries:
+    """One channel of a table; see `read_series`."""
+    if options.rate is not None and not (np.isfinite(options.rate) and options.rate > 0.0):
+        raise wrong("--rate", str(options.rate), "a positive number of samples per second")
+    known = {name: column_number(table, spec, where) for name, spec in options.columns.items()}
+    for name in ("t", *checks.CHANNELS):
+        like = [n for n, column in enumerate(table.names) if name in (column, split_unit(column)[0]) and n not in known.values()]
+        if name not in known and like:
+            known[name] = like[0]
+    name, index = _wanted(table, channel, known, where)
+    if index == known.get("t"):
+        found = f"the times, {table.columns[index].name}, as the channel to judge"
+        raise wrong(where, found, "a measured channel (--channel NAME)")
+    driven = next((one for one in ("x", "F") if one in known and known[one] != index), None)
+    numbers = {name: index} | ({driven: known[driven]} if driven else {})
+    if "t" in known:
+        numbers["t"] = known["t"]
+    elif options.rate is None:
+        raise wrong(where, "no time column t", f"one (--columns t=NAME), or the rate with --rate {_stated(table)}")
+    picked = Picked({one: table.columns[number] for one, number in numbers.items()}, numbers, {}, ())
+    t, found, unit, notes = _in_units(table, picked, name, options, where)
+    for note in (*table.notes, *notes):
+        warnings.warn(f"{where}: {note}", UserWarning, stacklevel=3)
     for one, values in found.items():
         checks.same_length(values, one, t, where)
-        checks.finite(values, one, where)
+    found = mended(t, found, options, where)
+    for one, values in found.items():
+        checks.finite(values, one, where, table.place)
     checks.long_enough(t, where)
-    checks.finite(t, "t", where)
+    checks.finite(t, "t", where, table.place)
     time_axis.increasing(t, where)
-    if resample is not None and resample is not False:
-        t, found = resampled(t, found, None if resample is True else float(resample), where)
+    if options.resample:
+        t, found = resampled(t, found, None if options.resample is True else float(options.resample), where)
     t = time_axis.uniform(t, where)
-    return MeasuredSeries(t, found[name], name, where, base_unit(units.get(name)), found[driven] if driven else None, driven)
+    return MeasuredSeries(t, found[name], name, where, unit, found[driven] if driven else None, driven)
 
 
-def _usual(known: Mapping[str, np.ndarray], columns: Mapping[str, str], where: str) -> str:
-    """The channel that is meant when none is named."""
+def _wanted(table: Table, channel: str | None, known: Mapping[str, int], where: str) -> tuple[str, int]:
+    """The channel that is meant and the number of its column."""
+    if channel is not None:
+        if channel in known:
+            return channel, known[channel]
+        try:
+            return channel, column_number(table, channel, where)
+        except checks.BadInput as why:
+            raise checks.BadInput(str(why).replace("--columns names", "--channel names", 1)) from None
     for name in USUAL:
-        if name in known and (name in columns or name not in columns.values()):
-            return name
-    others = [name for name in known if name != "t" and name != columns.get("t")]
+        if name in known:
+            return name, known[name]
+    time = known.get("t", guess_roles(table).get("t") if len(table.columns) > 1 else None)
+    others = [number for number in range(len(table.columns)) if number != time]
     if len(others) == 1:
-        return others[0]
-    raise wrong(where, f"the columns {listed(others)}", "one of them named with --channel NAME")
+        return table.names[others[0]], others[0]
+    raise wrong(where, f"the columns {listed(table.names[n] for n in others)}", "one of them named with --channel NAME")
 
 
-def _times(known: Mapping[str, np.ndarray], rate: float | None, samples: int, where: str) -> np.ndarray:
-    if rate is not None:
-        if not (np.isfinite(rate) and rate > 0.0):
-            raise wrong("--rate", str(rate), "a positive number of samples per second")
-        return np.arange(samples) / rate
-    if "t" not in known:
-        raise wrong(where, "no time column t", "one (--columns t=NAME), or the rate with --rate HZ")
-    return checks.real_vector(known["t"], "t", where)
+def _in_units(
+    table: Table, picked: Picked, name: str, options: ReadOptions, where: str
+) -> tuple[np.ndarray, dict[str, np.ndarray], str, list[str]]:
+    """Times and channels in the units that were stated for known channels; any other column stays in its own."""
+    t, notes = times_of(table, picked, options, where)
+    found = {one: numbers_of(table, column, one, where) for one, column in picked.channels.items() if one != "t"}
+    absent = [one for one in (*options.units, *options.scales) if one not in picked.channels]
+    if absent:
+        raise wrong(where, f"no channel {absent[0]}, which --unit or --scale names", f"one of {listed(picked.channels)}")
+    joint = {one: column for one, column in picked.channels.items() if one in checks.CHANNELS}
+    units, told = stated_units(Picked(joint, {}, {}, ()), options, where)
+    units = {one: unit for one, unit in units.items() if one in found}
+    scales = {one: scale for one, scale in options.scales.items() if one in found}
+    for one, factor in factors(units, scales, found, where).items():
+        found[one] = found[one] * factor
+    return t, found, base_unit(units.get(name)) or ("" if name in units else picked.channels[name].unit), [*notes, *told]
+
+
+def _stated(table: Table) -> str:
+    return f"{table.rate_hz:.9g}, which the file states" if table.rate_hz else "HZ"

@@ -1,28 +1,36 @@
-"""Read a record from a file, by the suffix of its name."""
+"""Read a record from a file: table, channels, units, one even clock, and what was found odd on the way.
 
-from collections.abc import Callable, Collection, Mapping
+The order matters. Turns are unwrapped and spikes taken out before anything is interpolated; what is missing is bridged before
+channels are compared; and the findings come last, of the rows as they were measured.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import warnings
+from collections.abc import Collection, Mapping
 from os import PathLike
 from pathlib import Path
 
 import numpy as np
 
+from jaxbacklash.errors import BadInput
+
 from . import checks, time_axis
-from .checks import listed, wrong
-from .columns import pick, wanted_columns
-from .csv_reader import read_csv
-from .mat_reader import read_mat
-from .npz_reader import read_npz
+from .bridge import bridged
+from .checks import wrong
+from .clocks import on_one_clock, times_of
+from .columns import Picked, pick
+from .conversion import in_si
+from .files import read_table
+from .finding import ASK, REFUSE, Finding
+from .findings import find, mended
+from .options import NONE, ReadOptions
 from .record import Record
 from .resample import resampled
-from .suspicions import warn_of_oddities
-from .units import factors
-
-Reader = Callable[[Path, Collection[str]], dict[str, np.ndarray]]
-READERS: dict[str, Reader] = {
-    **dict.fromkeys((".csv", ".txt", ".dat", ".tsv"), read_csv),
-    ".npz": read_npz,
-    ".mat": read_mat,
-}
+from .table import Table
+from .undriven import undriven
 
 
 def read_record(
@@ -32,78 +40,159 @@ def read_record(
     units: Mapping[str, str] | None = None,
     scales: Mapping[str, float] | None = None,
     resample: bool | float | None = None,
+    rate: float | None = None,
+    skip: int = 0,
+    decimal: str | None = None,
+    unwrap: Collection[str] = (),
+    ratio: float | None = None,
+    sign: Collection[str] = (),
+    despike: Collection[str] = (),
+    start: float | None = None,
+    stop: float | None = None,
 ) -> Record:
     """Read a record.
 
     Parameters
     ----------
     path : str or path
-        A .csv, .txt, .dat, .tsv, .npz or .mat file.
+        A text table, or a file of any format that `records.formats` knows.
     columns : mapping of str, optional
-        Names of the file's columns by channel; a channel not named is the column of its own name.
+        Columns by channel: a name as in the file or "#3" for the third; a channel not named is the column of its own name.
     units : mapping of str, optional
-        Units of channels that are not in s, rad (or m), N m (or N); converted. See `units.UNITS`.
+        Units of channels that are not in s, rad (or m), N m (or N); converted. They override those that the file states.
     scales : mapping of float, optional
         Factors of channels.
     resample : bool or float, optional
-        True makes uneven times even, at the median rate; a number is the rate wanted, Hz.
+        True makes uneven times even, at the median rate, and bridges short runs of missing values; a number is the rate
+        wanted, Hz.
+    rate : float, optional
+        Samples per second, Hz, of a file without times or with times that only tell when rows were written.
+    skip : int
+        Lines at the beginning of a text file to pass over.
+    decimal : str, optional
+        The decimal mark of a text file that can be read both ways.
+    unwrap, sign, despike : collections of str
+        Channels whose jumps by a turn are undone, that were measured the other way round, whose spikes are taken out.
+    ratio : float, optional
+        Turns of x for a turn of the link.
+    start, stop : float, optional
+        Only the samples between these times are used, s.
 
     Returns
     -------
     Record
-        Warns (UserWarning) where the record is odd but usable, see `suspicions`.
+        Warns (UserWarning) where the record is odd but usable; its `findings` hold what was found.
 
     Raises
     ------
     BadInput
         When there is no such file, it cannot be read, or what it holds cannot be used.
+
+    Examples
+    --------
+    >>> import jaxbacklash as jb
+    >>> record = jb.read_record("run1.csv", columns={"x": "enc1", "z": "#4"}, units={"x": "deg"})  # doctest: +SKIP
     """
-    columns, units, scales = columns or {}, units or {}, scales or {}
-    where = str(path)
-    table = _read_table(Path(path), wanted_columns(columns))
-    found, extras = pick(table, columns, where)
-    channels = {name: checks.real_vector(values, name, where) for name, values in found.items()}
-    for name, factor in factors(units, scales, channels, where).items():
-        channels[name] = channels[name] * factor
-    t = channels.pop("t")
-    # Beside the samples a file may hold settings and tables of another length; only columns are kept.
-    extras = {name: values for name, values in extras.items() if values.shape == t.shape}
-    confirmed = frozenset(units)
-    # `True` is a number too, 1 Hz; as a rate it means the median one.
-    if resample is not None and resample is not False:
-        rate = None if resample is True else float(resample)
-        t, channels, extras = _resampled(t, channels, extras, rate, confirmed, where)
-    record = Record(t, channels, where, extras, confirmed)
-    warn_of_oddities(record.channels, record.extras, where)
+    options = ReadOptions(
+        columns or NONE, units or NONE, scales or NONE, resample, rate, skip, frozenset(unwrap), ratio, frozenset(sign),
+        frozenset(despike), decimal, start, stop,
+    )  # fmt: skip
+    return record_of(read_table(Path(path), options), options, str(path))
+
+
+def record_of(table: Table, options: ReadOptions, where: str) -> Record:
+    """The record that a table holds; see `read_record`."""
+    _check(options)
+    clocked = any(column.clock is not None for column in table.columns)
+    picked = pick(table, options.columns, where, timed=options.rate is None and not clocked)
+    channels, notes = in_si(table, picked, options, where)
+    t, told = times_of(table, picked, options, where)
+    _whole(t, channels, table, where, options)
+    channels, compared = on_one_clock(table, picked, t, channels, options, where)
+    for note in (*table.notes, *picked.notes, *notes, *told, *compared):
+        warnings.warn(f"{where}: {note}", UserWarning, stacklevel=3)
+    channels = mended(t, channels, options, where)
+    extras = {name: values for name, values in picked.extras.items() if values.shape == t.shape}
+    t, channels, extras = _between(t, channels, extras, options, where)
+    if options.resample:
+        channels = bridged(t, channels, table, where)
+    for name, values in {"t": t, **channels}.items():
+        checks.finite(values, name, where, table.place)
+    findings = _found(t, channels, extras, picked, options, where)
+    if options.resample:
+        time_axis.increasing(t, where)
+        t, channels, extras = _even(t, channels, extras, options, where)
+    record = Record(t, channels, where, extras, _confirmed(picked, options), tuple(findings))
+    undriven(record, table, picked, options)
     return record
 
 
-def _read_table(path: Path, wanted: Collection[str]) -> dict[str, np.ndarray]:
-    """The columns of a file, or a sentence about why there are none."""
-    reader = READERS.get(path.suffix.lower())
-    where = str(path)
-    try:
-        if path.is_dir():
-            raise wrong(where, "a folder", "a file")
-        if not path.exists():
-            raise wrong(where, "no such file", "a record")
-        if reader is None:
-            raise wrong(where, f'the suffix "{path.suffix}"', f"one of {listed(READERS)}")
-        if not path.stat().st_size:
-            raise wrong(where, "an empty file", "a record")
-        return reader(path, wanted)
-    except OSError as why:
-        raise wrong(where, f"a file that cannot be read ({why.strerror or why})", "one that can") from why
+def _check(options: ReadOptions) -> None:
+    """Refuse numbers that cannot be meant."""
+    for option, value in (("--rate", options.rate), ("--ratio", options.ratio)):
+        if value is not None and not (math.isfinite(value) and value != 0.0 and (value > 0.0 or option == "--ratio")):
+            raise wrong(option, f"{value:g}", "a positive number")
+    if options.skip < 0:
+        raise wrong("--skip", str(options.skip), "a number of lines, zero or more")
+    if options.decimal not in (None, ".", ","):
+        raise wrong("--decimal", f'"{options.decimal}"', '"." or ","')
 
 
-def _resampled(t, channels, extras, rate, confirmed, where):
-    """The record's columns on an even grid; first what the times must be for that."""
+def _whole(t: np.ndarray, channels: dict[str, np.ndarray], table: Table, where: str, options: ReadOptions) -> None:
+    """Refuse times that are missing, and channels that have not a value for each time and no clock of their own."""
+    if options.rate is None:
+        checks.finite(t, "t", where, table.place)
+    clocked = any(column.clock is not None for column in table.columns)
     for name, values in channels.items():
-        checks.same_length(values, name, t, where)
-        checks.finite(values, name, where)
-    checks.finite(t, "t", where)
+        if not clocked:
+            checks.same_length(values, name, t, where)
+
+
+def _between(t, channels, extras, options: ReadOptions, where: str):
+    """Only the rows from `start` to `stop`."""
+    if options.start is None and options.stop is None:
+        return t, channels, extras
+    low = -math.inf if options.start is None else options.start
+    high = math.inf if options.stop is None else options.stop
+    rows = (t >= low) & (t <= high)
+    if not rows.any():
+        found = f"no samples from {low:g} s to {high:g} s"
+        raise wrong(where, found, f"a part of {t[0]:.6g} s to {t[-1]:.6g} s for --from and --to")
+    return t[rows], {n: v[rows] for n, v in channels.items()}, {n: v[rows] for n, v in extras.items()}
+
+
+def _found(t, channels, extras, picked: Picked, options: ReadOptions, where: str) -> list[Finding]:
+    """What the checks found: refused or asked about, or warned of and handed on."""
+    stated = frozenset(options.units) | {name for name, column in picked.channels.items() if column.unit}
+    findings = find(t, channels, extras, options, units_stated=stated, rate_hz=options.rate)
+    for finding in findings:
+        if finding.action in (REFUSE, ASK):
+            remedy = finding.remedy if finding.remedy.startswith("--") else ""
+            raise BadInput(finding.sentence(where), remedy=remedy)
+    for finding in findings:
+        warnings.warn(finding.sentence(where), UserWarning, stacklevel=4)
+    return findings
+
+
+def _even(t, channels, extras, options: ReadOptions, where: str):
+    """The record's columns on an even grid."""
     checks.long_enough(t, where)
-    time_axis.increasing(t, where)
-    time_axis.in_seconds(t, confirmed, where)
-    t, every = resampled(t, channels | {f"extra {name}": values for name, values in extras.items()}, rate, where)
+    # `True` is a number too, 1 Hz; as a rate it means the median one.
+    rate = None if options.resample is True else options.resample
+    every = channels | {f"extra {name}": values for name, values in extras.items()}
+    t, every = resampled(t, every, rate, where)
     return t, {name: every[name] for name in channels}, {name: every[f"extra {name}"] for name in extras}
+
+
+def _confirmed(picked: Picked, options: ReadOptions) -> frozenset[str]:
+    """Channels whose unit is sure: stated by the user, or times that came with a unit or as stamps."""
+    confirmed = frozenset(options.units)
+    if options.rate is not None or "t" not in picked.channels:
+        return confirmed | {"t"}
+    column = picked.channels["t"]
+    return confirmed | {"t"} if column.unit or column.values.dtype.kind == "U" else confirmed
+
+
+def replaced(options: ReadOptions, **changes) -> ReadOptions:
+    """The options with some of them changed."""
+    return dataclasses.replace(options, **changes)

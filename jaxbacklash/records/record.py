@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 
 from . import checks, time_axis
+from .finding import Finding
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -26,6 +27,8 @@ class Record:
         Further columns, under their own names and unconverted; they may hold NaN or text.
     confirmed : frozenset of str
         Channels (and "t") whose unit the user stated: a size unlikely for radians or seconds is then believed.
+    findings : tuple of Finding
+        What the reader found odd and warned of; a fit that misses something names these first.
 
     Raises
     ------
@@ -38,6 +41,7 @@ class Record:
     path: str = ""
     extras: dict[str, np.ndarray] = dataclasses.field(default_factory=dict)
     confirmed: frozenset[str] = frozenset()
+    findings: tuple[Finding, ...] = ()
 
     def __post_init__(self):
         where = self.path or "the record"

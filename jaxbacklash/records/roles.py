@@ -14,8 +14,8 @@ from .table import Column, Table
 
 NAMES: dict[str, tuple[str, ...]] = {
     "t": ("t", "time", "timestamp", "time stamp", "elapsed", "zeit", "temps", "tiempo", "seconds", "sec", "datetime", "clock"),
-    "x": ("x", "base", "input", "motor", "drive", "shaker", "platform", "phi", "enc1", "encoder1", "ch1", "channel 1", "a0", "ai0"),
-    "z": ("z", "relative", "rel", "difference", "diff", "play", "ch2", "channel 2", "enc2", "encoder2", "ai1", "a1"),
+    "x": ("x", "base", "input", "motor", "drive", "shaker", "platform", "phi", "enc1", "encoder1", "ch1", "channel 1", "ai0"),
+    "z": ("z", "relative", "rel", "difference", "diff", "play", "ch2", "channel 2", "enc2", "encoder2", "ai1"),
     "y": ("y", "link", "output", "load", "arm", "absolute", "abs", "theta", "position", "pos", "angle"),
     "F": ("F", "force", "torque", "load cell"),
     "T": ("T", "transmitted"),
