@@ -75,6 +75,20 @@ Heldout = Annotated[
 ]
 
 
+@app.command(epilog="Example: jaxbacklash look run1.csv")
+@reads
+def look(
+    file: Annotated[Path, typer.Argument(callback=there, help="Any file with measurements")],
+    reading: Reading = AS_IT_IS,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for result.json and report.html")] = None,
+    json: Json = False,
+) -> None:
+    """Look at a file: what is in it, what it seems to be, what is odd, and the command to go on with."""
+    from .commands import look as command
+
+    command.run(file, out=out, as_json=json, reading=reading)
+
+
 @computes(
     epilog="Example: jaxbacklash fit run1.csv --inertia 3.16 --columns x=enc1,z=enc2 --unit x=deg,z=deg --out fit1"
 )

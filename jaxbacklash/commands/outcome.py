@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import errno
 import os
+import shlex
 import sys
 import traceback
 from typing import Any
@@ -23,7 +24,7 @@ NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 def told(error: BaseException) -> tuple[str, int]:
     """The sentence for an error, and the exit code; no sentence where nobody would read it."""
     if isinstance(error, BadInput):
-        return f"error: {error}", 2
+        return f"error: {error}{_next(error.remedy)}", 2
     if isinstance(error, NoAnswer):
         return f"no answer: {error}", 1
     if isinstance(error, KeyboardInterrupt):
@@ -35,6 +36,15 @@ def told(error: BaseException) -> tuple[str, int]:
     if os.environ.get(DEBUG):
         traceback.print_exception(error)
     return _unforeseen(error), 1
+
+
+def _next(remedy: str) -> str:
+    """The whole command that goes on, where a refusal proposes one."""
+    if not remedy:
+        return ""
+    from ..records.remedies import with_remedy
+
+    return f" Next: {shlex.join(['jaxbacklash', *with_remedy(sys.argv[1:], remedy)])}"
 
 
 def _unforeseen(error: BaseException) -> str:
@@ -63,7 +73,7 @@ def _unforeseen(error: BaseException) -> str:
 def say(sentence: str, code: int) -> int:
     """One line on stderr; returns the exit code."""
     if sentence:
-        print(" ".join(sentence.split()), file=sys.stderr)
+        print(" ".join(sentence.splitlines()), file=sys.stderr)  # blanks stay: names of files may hold two
     return code
 
 

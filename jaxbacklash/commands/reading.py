@@ -45,6 +45,9 @@ class Reading:
     ratio: Annotated[float | None, typer.Option("--ratio", help="Turns of x for a turn of the link, with a gear between")] = None
     sign: Annotated[Texts, typer.Option("--sign", help="Channels measured the other way round: y or F")] = None
     despike: Annotated[Texts, typer.Option("--despike", help="Channels from which single bad samples are taken: z or x,z")] = None
+    accept: Annotated[
+        Texts, typer.Option("--accept", help="Findings that are right as they are, by the names that refusals give: wrap,gear")
+    ] = None
     start: Annotated[float | None, typer.Option("--from", help="Use the record from this time on [s]")] = None
     stop: Annotated[float | None, typer.Option("--to", help="Use the record up to this time [s]")] = None
 
@@ -57,10 +60,15 @@ class Reading:
             When one of them cannot be.
         """
         from ..records import parse_channels, parse_columns, parse_scales, parse_units
+        from ..records.findings.rules import RULES
         from ..records.options import ReadOptions
 
         if self.resample_rate is not None and not 0.0 < self.resample_rate < float("inf"):
             raise BadInput(f"--resample-rate {self.resample_rate:g}: wanted a positive number of samples per second.")
+        accepted = frozenset(name.strip() for text in self.accept or [] for name in text.split(",") if name.strip())
+        unknown = sorted(accepted - set(RULES))
+        if unknown:
+            raise BadInput(f"--accept {unknown[0]}: found no such finding, wanted one of {', '.join(RULES)}.")
         chosen = {name: getattr(self, name) or [] for name in ("unwrap", "sign", "despike")}
         return ReadOptions(
             columns=parse_columns(self.columns) if self.columns else {},
@@ -73,8 +81,21 @@ class Reading:
             decimal=self.decimal,
             start=self.start,
             stop=self.stop,
+            accept=accepted,
             **{name: parse_channels(texts, f"--{name}") if texts else frozenset() for name, texts in chosen.items()},
         )
+
+    def typed(self) -> tuple[str, ...]:
+        """The options as words of a command."""
+        words: list[str] = []
+        for field in dataclasses.fields(self):
+            option = _OPTIONS[field.name]
+            given = getattr(self, field.name)
+            if given is True:
+                words.append(option)
+            elif given not in (None, False, 0):
+                words += [word for value in (given if isinstance(given, list) else [given]) for word in (option, f"{value}")]
+        return tuple(words)
 
     def record(self, path: Path) -> Record:
         """The record in a file."""
@@ -92,6 +113,11 @@ class Reading:
         options = self.options()
         return series_of(read_table(path, options), channel, options, str(path))
 
+
+_OPTIONS = {
+    name: next(option for option in parameter.annotation.__metadata__[0].param_decls if option.startswith("--"))
+    for name, parameter in inspect.signature(Reading, eval_str=True).parameters.items()
+}
 
 AS_IT_IS = Reading()
 """A file that says all by itself."""

@@ -18,7 +18,7 @@ from .conversion import numbers_of, stated_units
 from .files import read_table
 from .findings import mended
 from .header_units import split_unit
-from .options import NONE, ReadOptions
+from .options import ReadOptions
 from .resample import resampled
 from .roles import guess_roles
 from .table import Table
@@ -91,7 +91,7 @@ def read_series(
     BadInput
         There is no such file or column, or the times are not even.
     """
-    options = ReadOptions(columns or NONE, units or NONE, scales or NONE, resample, rate)
+    options = ReadOptions(columns or {}, units or {}, scales or {}, resample, rate)
     return series_of(read_table(Path(path), options), channel, options, str(path))
 
 

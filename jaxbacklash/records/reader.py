@@ -26,7 +26,7 @@ from .conversion import in_si
 from .files import read_table
 from .finding import ASK, REFUSE, Finding
 from .findings import find, mended
-from .options import NONE, ReadOptions
+from .options import ReadOptions
 from .record import Record
 from .resample import resampled
 from .table import Table
@@ -49,6 +49,7 @@ def read_record(
     despike: Collection[str] = (),
     start: float | None = None,
     stop: float | None = None,
+    accept: Collection[str] = (),
 ) -> Record:
     """Read a record.
 
@@ -77,6 +78,8 @@ def read_record(
         Turns of x for a turn of the link.
     start, stop : float, optional
         Only the samples between these times are used, s.
+    accept : collection of str
+        Kinds of finding (`findings.rules.RULES`) that are right as they are.
 
     Returns
     -------
@@ -94,8 +97,8 @@ def read_record(
     >>> record = jb.read_record("run1.csv", columns={"x": "enc1", "z": "#4"}, units={"x": "deg"})  # doctest: +SKIP
     """
     options = ReadOptions(
-        columns or NONE, units or NONE, scales or NONE, resample, rate, skip, frozenset(unwrap), ratio, frozenset(sign),
-        frozenset(despike), decimal, start, stop,
+        columns or {}, units or {}, scales or {}, resample, rate, skip, frozenset(unwrap), ratio, frozenset(sign),
+        frozenset(despike), decimal, start, stop, frozenset(accept),
     )  # fmt: skip
     return record_of(read_table(Path(path), options), options, str(path))
 

@@ -1,0 +1,41 @@
+"""The page of `look`: what a file seems to be, the command to go on with, and a picture of each column."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ..records.description import Description
+from .drawing import to_svg
+from .figures_columns import column_over_rows
+from .html import Panel, write_report
+
+MOST_PICTURES = 24
+"""Columns that are drawn; a file of hundreds of channels is listed whole in result.json."""
+
+
+def look_report(found: Description, result: dict[str, Any], path: Path) -> None:
+    """Write the page of ``look``."""
+    page = {
+        **result,
+        "command": "look",
+        "verdict_text": f"Next: {found.command}" if found.command else found.obstacle,
+        "findings": [*found.questions, *found.notes],
+        "record": {"path": found.path, "samples": found.table.rows, "rate_hz": found.rate_hz},
+    }
+    write_report(path, page, panels(found))
+
+
+def panels(found: Description) -> list[Panel]:
+    """One picture a column, those with a role first."""
+    ordered = sorted(found.columns, key=lambda column: (not column.role, column.number))
+    begins = found.table.first_line or 1
+    shown = []
+    for facts in ordered[:MOST_PICTURES]:
+        role = f", taken as {facts.role}" if facts.role else ""
+        span = "" if facts.low is None else f"{facts.low:.6g} to {facts.high:.6g} {facts.unit}".strip()
+        sentence = ". ".join(text.rstrip(".") for text in facts.findings) or span
+        if facts.column.values.dtype.kind == "f":
+            picture = to_svg(column_over_rows(facts, begins))
+            shown.append(Panel(f"#{facts.number} {facts.name}{role}", f"{sentence}.", picture, f"column-{facts.number}"))
+    return shown
