@@ -16,7 +16,7 @@ from .clocks import times_of
 from .columns import Picked, column_number
 from .conversion import numbers_of, stated_units
 from .files import read_table
-from .findings import mended
+from .mending import mended
 from .header_units import split_unit
 from .options import ReadOptions
 from .resample import resampled
@@ -120,7 +120,7 @@ def series_of(table: Table, channel: str | None, options: ReadOptions, where: st
         warnings.warn(f"{where}: {note}", UserWarning, stacklevel=3)
     for one, values in found.items():
         checks.same_length(values, one, t, where)
-    found = mended(t, found, options, where)
+    found = mended(found, options, where)
     for one, values in found.items():
         checks.finite(values, one, where, table.place)
     checks.long_enough(t, where)

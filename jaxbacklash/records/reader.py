@@ -25,7 +25,9 @@ from .columns import Picked, pick
 from .conversion import in_si
 from .files import read_table
 from .finding import ASK, REFUSE, Finding
-from .findings import find, mended
+from .findings import find, find_in_times
+from .findings.mend import after
+from .mending import mended
 from .options import ReadOptions
 from .record import Record
 from .resample import resampled
@@ -114,7 +116,7 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
     channels, compared = on_one_clock(table, picked, t, channels, options, where)
     for note in (*table.notes, *picked.notes, *notes, *told, *compared):
         warnings.warn(f"{where}: {note}", UserWarning, stacklevel=3)
-    channels = mended(t, channels, options, where)
+    channels = mended(channels, options, where)
     extras = {name: values for name, values in picked.extras.items() if values.shape == t.shape}
     t, channels, extras = _between(t, channels, extras, options, where)
     if options.resample:
@@ -122,6 +124,7 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
     for name, values in {"t": t, **channels}.items():
         checks.finite(values, name, where, table.place)
     findings = _found(t, channels, extras, picked, options, where)
+    t, channels, extras = after(t, channels, extras, findings)
     if options.resample:
         time_axis.increasing(t, where)
         t, channels, extras = _even(t, channels, extras, options, where)
@@ -167,7 +170,8 @@ def _between(t, channels, extras, options: ReadOptions, where: str):
 def _found(t, channels, extras, picked: Picked, options: ReadOptions, where: str) -> list[Finding]:
     """What the checks found: refused or asked about, or warned of and handed on."""
     stated = frozenset(options.units) | {name for name, column in picked.channels.items() if column.unit}
-    findings = find(t, channels, extras, options, units_stated=stated, rate_hz=options.rate)
+    findings = find_in_times(t, options, units_stated=stated)
+    findings += find(t, channels, extras, options, units_stated=stated, rate_hz=options.rate)
     for finding in findings:
         if finding.action in (REFUSE, ASK):
             remedy = finding.remedy if finding.remedy.startswith("--") else ""
