@@ -89,7 +89,7 @@ def test_an_unknown_unit_of_the_file_is_not_passed_over():
 
 
 def test_a_name_that_stands_twice_is_told_and_its_clock_compared():
-    source = table(Column("Time", T), Column("a", X), Column("Time", T), Column("b", Z))
+    source = table(Column("Time", T), Column("a", X), Column("Time", T.copy()), Column("b", Z))
     found, said = read(source, columns={"t": "Time", "x": "a", "z": "b"})
     assert found.samples == N
     assert any("more than once" in sentence for sentence in said)
@@ -105,7 +105,8 @@ def test_clocks_apart_are_refused_and_brought_together_on_request():
     assert "0.7 ms" in str(refused)
     found, said = read(source, resample=True)
     inside = slice(5, -5)
-    assert np.max(np.abs(found.channels["z"][inside] - Z[1:][inside][: found.samples - 10])) < 2e-4
+    assert found.samples == N - 1
+    assert np.max(np.abs(found.channels["z"][inside] - Z[1:][inside])) < 2e-4
     assert any("own times" in sentence for sentence in said)
 
 

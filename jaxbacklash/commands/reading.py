@@ -115,7 +115,8 @@ class Reading:
 
 
 _OPTIONS = {
-    name: next(option for option in parameter.annotation.__metadata__[0].param_decls if option.startswith("--"))
+    # typer takes the first word of an annotation's Option for its default until the parameter has one.
+    name: parameter.annotation.__metadata__[0].default
     for name, parameter in inspect.signature(Reading, eval_str=True).parameters.items()
 }
 

@@ -118,6 +118,8 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
         warnings.warn(f"{where}: {note}", UserWarning, stacklevel=3)
     channels = mended(channels, options, where)
     extras = {name: values for name, values in picked.extras.items() if values.shape == t.shape}
+    if compared:
+        t, channels, extras = _covered(t, channels, extras)
     t, channels, extras = _between(t, channels, extras, options, where)
     if options.resample:
         channels = bridged(t, channels, table, where)
@@ -152,6 +154,16 @@ def _whole(t: np.ndarray, channels: dict[str, np.ndarray], table: Table, where: 
     for name, values in channels.items():
         if not clocked:
             checks.same_length(values, name, t, where)
+
+
+def _covered(t, channels, extras):
+    """Only the rows from the first to the last for which every channel has a value: clocks need not begin or end together."""
+    known = np.all([np.isfinite(values) for values in channels.values()], axis=0)
+    if known.size != t.size or not known.any():
+        return t, channels, extras
+    first, last = int(np.argmax(known)), t.size - int(np.argmax(known[::-1]))
+    rows = slice(first, last)
+    return t[rows], {n: v[rows] for n, v in channels.items()}, {n: v[rows] for n, v in extras.items()}
 
 
 def _between(t, channels, extras, options: ReadOptions, where: str):
