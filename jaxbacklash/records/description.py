@@ -122,7 +122,8 @@ def describe(path: Path, options: ReadOptions, *, typed: tuple[str, ...] = ()) -
                 break
             words = with_remedy(words, remedy)
     roles = _roles(table, options, where)
-    if record is None and not {"z", "y", "T"} & set(roles):
+    moving = [number for number, column in enumerate(table.columns) if numeric(column) and number != roles.get("t")]
+    if record is None and len(moving) == 1 and not {"F", "T"} & set(roles):
         series = True
     command = _command(words, table, roles, record, series)
     return Description(

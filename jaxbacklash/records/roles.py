@@ -11,6 +11,7 @@ import numpy as np
 
 from .header_units import split_unit
 from .table import Column, Table
+from .units import spelt
 
 NAMES: dict[str, tuple[str, ...]] = {
     "t": ("t", "time", "timestamp", "time stamp", "elapsed", "zeit", "temps", "tiempo", "seconds", "sec", "datetime", "clock"),
@@ -37,9 +38,14 @@ def numeric(column: Column) -> bool:
 
 def _likeness(channel: str, column: Column) -> int:
     """How well a column's name fits a channel: 3 the same, 2 a usual name, 1 begins with one, 0 not at all."""
-    bare, _ = split_unit(column.name.rpartition("/")[2])
+    bare, unit = split_unit(column.name.rpartition("/")[2])
+    unit = column.unit or unit
+    if unit and spelt(channel, unit) is None:
+        return 0  # a force in kip is no motion
     if bare == channel:
         return 3
+    if bare.startswith(f"{channel}_"):
+        return 1
     lower = " ".join(bare.lower().replace("_", " ").split())
     if lower in NAMES[channel][1:]:
         return 2
@@ -80,6 +86,8 @@ def guess_roles(table: Table) -> dict[str, int]:
         times = [number for number, column in enumerate(table.columns) if number not in found.values() and _is_time(column)]
         found |= {"t": times[0]} if times else {}
     moves = {channel for channel in found if channel in ("z", "y")}
+    if not moves and {"x", "F"} <= set(found):
+        found["T"] = found.pop("F")  # beside the base's motion alone a force is the one that the joint transmits
     rest = [n for n, column in enumerate(table.columns) if n not in found.values() and numeric(column) and not _is_time(column)]
     if not moves and "T" not in found and rest:
         if "x" not in found and "F" not in found and len(rest) > 1:

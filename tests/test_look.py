@@ -1,0 +1,78 @@
+"""`jaxbacklash look`: facts of a file, questions, and a command that goes on and is then right."""
+
+import json
+import shlex
+
+import numpy as np
+import pytest
+
+from jaxbacklash.cli import app
+from jaxbacklash.commands.look import spark
+from jaxbacklash.records.description import describe
+from jaxbacklash.records.options import ReadOptions
+
+N, RATE = 1500, 500.0
+T = np.arange(N) / RATE
+RNG = np.random.default_rng(1)
+X = 0.1 * np.sin(13 * T) + 3e-5 * RNG.standard_normal(N)
+Z = 0.02 * np.sin(29 * T + 0.4) + 3e-5 * RNG.standard_normal(N)
+
+
+def written(path, names, *columns):
+    rows = [",".join(f'"{name}"' for name in names), *(",".join(f"{value:.9g}" for value in row) for row in zip(*columns))]
+    path.write_text("\n".join(rows) + "\n")
+    return path
+
+
+def looked(capsys, *words):
+    app(["look", *map(str, words)], standalone_mode=False)
+    return capsys.readouterr().out
+
+
+def test_a_good_record_is_told_with_its_roles_and_the_command(tmp_path, capsys):
+    path = written(tmp_path / "run 1.csv", ["t", "x", "z"], T, X, Z)
+    said = looked(capsys, path)
+    assert "500 Hz" in said and "-> x" in said and "a record of base motion" in said
+    assert said.rstrip().endswith(f"next: jaxbacklash fit '{path}'")
+
+
+def test_the_json_is_what_the_interface_says(tmp_path, capsys):
+    path = written(tmp_path / "run.csv", ["Time [s]", "Base, deg", "Rel, deg"], T, np.degrees(X), np.degrees(Z))
+    found = json.loads(looked(capsys, path, "--json"))
+    assert {"format", "encoding", "rows", "rate_hz", "columns", "kind", "questions", "command"} <= set(found)
+    assert found["kind"] == "base_motion" and found["rows"] == N and found["rate_hz"] == pytest.approx(RATE)
+    assert [(column["role"], column["unit"]) for column in found["columns"]] == [("t", "s"), ("x", "deg"), ("z", "deg")]
+    assert shlex.split(found["command"])[:3] == ["jaxbacklash", "fit", str(path)]
+    assert "Base, deg" in found["command"] and len(found["questions"]) == 1
+
+
+def test_what_is_asked_is_answered_until_the_record_can_be_read(tmp_path):
+    wrapped = np.mod(X + 3.1 + np.pi, 2 * np.pi) - np.pi
+    holed = Z.copy()
+    holed[900:902] = np.nan
+    path = written(tmp_path / "run.csv", ["Time", "CH1", "CH2"], T, wrapped, holed)
+    found = describe(path, ReadOptions())
+    assert found.record is not None and len(found.questions) == 3
+    words = shlex.split(found.command)
+    assert {"--columns", "--unwrap", "--resample"} <= set(words)
+    np.testing.assert_allclose(np.ptp(found.record.channels["x"]), np.ptp(X), rtol=1e-6)
+
+
+def test_one_series_goes_to_chaos(tmp_path):
+    path = written(tmp_path / "laser.csv", ["intensity"], np.abs(np.sin(np.arange(800) ** 1.1)))
+    found = describe(path, ReadOptions())
+    assert found.kind == "series" and found.command.startswith("jaxbacklash chaos ")
+    assert "--rate HZ" in found.command
+
+
+def test_a_page_shows_every_column(tmp_path, capsys):
+    path = written(tmp_path / "run.csv", ["t", "x", "z", "temperature <b>"], T, X, Z, 20 + 0.1 * T)
+    looked(capsys, path, "--out", tmp_path / "out")
+    page = (tmp_path / "out" / "report.html").read_text()
+    assert page.count("<figure>") == 4 and "temperature &lt;b&gt;" in page
+    assert json.loads((tmp_path / "out" / "result.json").read_text())["rows"] == N
+
+
+def test_a_row_of_blocks_follows_the_values():
+    assert spark(np.linspace(0.0, 1.0, 8), 8) == "▁▂▃▄▅▆▇█"
+    assert spark(np.array(["a", "b"])) == "" and spark(np.ones(5)) == ""
