@@ -89,8 +89,10 @@ def in_si(
         option = "--unit" if absent[0] in units else "--scale"
         raise wrong(where, f"no channel {absent[0]}, which {option} names", f"one of {listed(picked.channels)}")
     motions = [name for name in found if name in ("x", "z", "y")]
-    if {units.get(name) for name in motions} - {None} and any(name not in units for name in motions):
-        _one_kind(units, motions, where)
+    told = {name: unit for name, unit in units.items() if name in motions and name not in options.units}
+    silent = [name for name in motions if name not in units and name not in options.scales]
+    if told and silent:
+        _one_kind(told, silent, where)
     kept = {name: unit for name, unit in units.items() if name in found}
     scales = {name: scale for name, scale in options.scales.items() if name in found}
     for name, factor in factors(kept, scales, found, where).items():
@@ -98,10 +100,8 @@ def in_si(
     return found, notes
 
 
-def _one_kind(units: dict[str, str], motions: list[str], where: str) -> None:
-    """Refuse degrees beside a motion of no stated unit where the unit came from the file: was the other one meant too?"""
-    stated = {name: units[name] for name in motions if name in units}
-    silent = [name for name in motions if name not in units]
+def _one_kind(stated: dict[str, str], silent: list[str], where: str) -> None:
+    """Refuse degrees that the file states beside a motion of no unit: is the other one meant too?"""
     other = next(iter(stated.values()))
     if UNITS["x"][other] == 1.0:
         return
