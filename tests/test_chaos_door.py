@@ -104,7 +104,7 @@ def test_a_value_that_is_absent_says_why(call, tmp_path):
         ("s,a,b", ["--channel", "a"], "no time column t"),
         ("t,z,b", ["--surrogates", "other"], "iaaft"),
         ("t,z,b", ["--surrogate-count", "5"], "at least 19"),
-        ("t,z,b", ["--rate", "-1"], "positive"),
+        ("t,z,b", ["--rate", "-1"], "wanted"),
     ],
 )
 def test_mistakes_end_in_one_sentence(call, tmp_path, header, words, said):

@@ -32,7 +32,9 @@ def looked(capsys, *words):
 def test_a_good_record_is_told_with_its_roles_and_the_command(tmp_path, capsys):
     path = written(tmp_path / "run 1.csv", ["t", "x", "z"], T, X, Z)
     said = looked(capsys, path)
-    assert "500 Hz" in said and "-> x" in said and "a record of base motion" in said
+    assert "500 Hz" in said
+    assert "-> x" in said
+    assert "a record of base motion" in said
     assert said.rstrip().endswith(f"next: jaxbacklash fit '{path}'")
 
 
@@ -40,10 +42,13 @@ def test_the_json_is_what_the_interface_says(tmp_path, capsys):
     path = written(tmp_path / "run.csv", ["Time [s]", "Base, deg", "Rel, deg"], T, np.degrees(X), np.degrees(Z))
     found = json.loads(looked(capsys, path, "--json"))
     assert {"format", "encoding", "rows", "rate_hz", "columns", "kind", "questions", "command"} <= set(found)
-    assert found["kind"] == "base_motion" and found["rows"] == N and found["rate_hz"] == pytest.approx(RATE)
+    assert found["kind"] == "base_motion"
+    assert found["rows"] == N
+    assert found["rate_hz"] == pytest.approx(RATE)
     assert [(column["role"], column["unit"]) for column in found["columns"]] == [("t", "s"), ("x", "deg"), ("z", "deg")]
     assert shlex.split(found["command"])[:3] == ["jaxbacklash", "fit", str(path)]
-    assert "Base, deg" in found["command"] and len(found["questions"]) == 1
+    assert "Base, deg" in found["command"]
+    assert len(found["questions"]) == 1
 
 
 def test_what_is_asked_is_answered_until_the_record_can_be_read(tmp_path):
@@ -52,7 +57,8 @@ def test_what_is_asked_is_answered_until_the_record_can_be_read(tmp_path):
     holed[900:902] = np.nan
     path = written(tmp_path / "run.csv", ["Time", "CH1", "CH2"], T, wrapped, holed)
     found = describe(path, ReadOptions())
-    assert found.record is not None and len(found.questions) == 3
+    assert found.record is not None
+    assert len(found.questions) == 3
     words = shlex.split(found.command)
     assert {"--columns", "--unwrap", "--resample"} <= set(words)
     np.testing.assert_allclose(np.ptp(found.record.channels["x"]), np.ptp(X), rtol=1e-6)
@@ -61,7 +67,8 @@ def test_what_is_asked_is_answered_until_the_record_can_be_read(tmp_path):
 def test_one_series_goes_to_chaos(tmp_path):
     path = written(tmp_path / "laser.csv", ["intensity"], np.abs(np.sin(np.arange(800) ** 1.1)))
     found = describe(path, ReadOptions())
-    assert found.kind == "series" and found.command.startswith("jaxbacklash chaos ")
+    assert found.kind == "series"
+    assert found.command.startswith("jaxbacklash chaos ")
     assert "--rate HZ" in found.command
 
 
@@ -69,10 +76,12 @@ def test_a_page_shows_every_column(tmp_path, capsys):
     path = written(tmp_path / "run.csv", ["t", "x", "z", "temperature <b>"], T, X, Z, 20 + 0.1 * T)
     looked(capsys, path, "--out", tmp_path / "out")
     page = (tmp_path / "out" / "report.html").read_text()
-    assert page.count("<figure>") == 4 and "temperature &lt;b&gt;" in page
+    assert page.count("<figure>") == 4
+    assert "temperature &lt;b&gt;" in page
     assert json.loads((tmp_path / "out" / "result.json").read_text())["rows"] == N
 
 
 def test_a_row_of_blocks_follows_the_values():
     assert spark(np.linspace(0.0, 1.0, 8), 8) == "▁▂▃▄▅▆▇█"
-    assert spark(np.array(["a", "b"])) == "" and spark(np.ones(5)) == ""
+    assert spark(np.array(["a", "b"])) == ""
+    assert spark(np.ones(5)) == ""

@@ -58,16 +58,17 @@ def test_columns_are_named_plainly_in_quotes_or_by_number(text, meant):
 
 
 def test_a_column_is_found_by_name_number_or_name_without_its_unit():
-    source = table(Column("Time [s]", T, "s"), Column("a, b", X), Column("rel", Z))
+    source = table(Column("Time [s]", T, "s"), Column("p, q", X), Column("rel", Z))
     for spec in ("#1", "Time [s]", "Time"):
-        found, _ = read(source, columns={"t": spec, "x": "a, b", "z": "#3"})
+        found, _ = read(source, columns={"t": spec, "x": "p, q", "z": "#3"})
         np.testing.assert_array_equal(found.channels["x"], X)
     assert "#1 to #3" in str(refusal(source, columns={"t": "#4"}))
     assert "did you mean rel" in str(refusal(source, columns={"t": "#1", "z": "rell"}))
 
 
 def test_a_channel_with_its_unit_in_the_name_is_read_in_that_unit_and_said():
-    source = table(Column("t [ms]", 1e3 * T, "ms"), Column("x [deg]", np.degrees(X), "deg"), Column("z [deg]", np.degrees(Z), "deg"))
+    moved = Column("x [deg]", np.degrees(X), "deg"), Column("z [deg]", np.degrees(Z), "deg")
+    source = table(Column("t [ms]", 1e3 * T, "ms"), *moved)
     found, said = read(source)
     np.testing.assert_allclose(found.channels["z"], Z, rtol=1e-12)
     np.testing.assert_allclose(found.t, T, atol=1e-12)
@@ -89,8 +90,8 @@ def test_an_unknown_unit_of_the_file_is_not_passed_over():
 
 
 def test_a_name_that_stands_twice_is_told_and_its_clock_compared():
-    source = table(Column("Time", T), Column("a", X), Column("Time", T.copy()), Column("b", Z))
-    found, said = read(source, columns={"t": "Time", "x": "a", "z": "b"})
+    source = table(Column("Time", T), Column("p", X), Column("Time", T.copy()), Column("b", Z))
+    found, said = read(source, columns={"t": "Time", "x": "p", "z": "b"})
     assert found.samples == N
     assert any("more than once" in sentence for sentence in said)
     assert any("the same as those of t" in sentence for sentence in said)
@@ -132,7 +133,8 @@ def test_short_gaps_are_bridged_on_request_and_their_rows_named():
     holed[700:703] = np.nan
     source = table(Column("t", T), Column("x", X), Column("z", holed), first_line=2)
     refused = refusal(source)
-    assert "row 701 (line 702)" in str(refused) and refused.remedy == "--resample"
+    assert "row 701 (line 702)" in str(refused)
+    assert refused.remedy == "--resample"
     found, said = read(source, resample=True)
     assert np.max(np.abs(found.channels["z"] - Z)) < 3e-4
     assert any("row 701 (line 702)" in sentence for sentence in said)

@@ -62,7 +62,7 @@ def pick(table: Table, mapping: Mapping[str, str], where: str, *, timed: bool = 
     extras = {
         f"{column.name} (unmapped)" if column.name in ("t", *CHANNELS) else column.name: column.values
         for number, column in reversed(list(enumerate(table.columns)))
-        if number not in numbers.values()
+        if number not in numbers.values() and not _empty(column)
     }
     return Picked(channels, numbers, dict(reversed(extras.items())), _notes(table, numbers))
 
@@ -86,12 +86,19 @@ def column_number(table: Table, spec: str, where: str) -> int:
     ends = [number for number, name in enumerate(names) if spec in (split_unit(name)[0], name.rpartition("/")[2])]
     if len(ends) == 1:
         return ends[0]
+    if spec in table.left_out:
+        raise wrong(f"{where}, column {spec}", table.left_out[spec], "one number for each sample")
     near = _near(spec, names)
     hint = f" (did you mean {spec_of(table, names.index(near))}?)" if near else ""
     numbered = ", ".join(f"#{number} {name}" for number, name in enumerate(names[:12], 1))
     more = f" and {len(names) - 12} more" if len(names) > 12 else ""
     quoting = "; a name with a comma is written in quotes, as in 't=\"Time, s\"'" if any("," in name for name in names) else ""
     raise wrong(where, f'no column "{spec}", which --columns names', f"one of {numbered or 'nothing'}{more}{hint}{quoting}")
+
+
+def _empty(column: Column) -> bool:
+    """Whether a column has no value at all, like the one that a separator at the end of each line makes."""
+    return column.values.dtype.kind == "f" and bool(np.isnan(column.values).all())
 
 
 def _with_unit(table: Table, channel: str, taken: Mapping[str, int]) -> int | None:
@@ -105,6 +112,9 @@ def _complete(table: Table, numbers: Mapping[str, int], where: str, timed: bool)
     moves = {"z", "y"} & set(numbers) or {"x", "T"} <= set(numbers)
     if ("t" in numbers or not timed) and moves:
         return
+    unused = next((name for name in ("t", *CHANNELS) if name in table.left_out and name not in numbers), None)
+    if unused is not None:
+        raise wrong(f"{where}, column {unused}", table.left_out[unused], "one number for each sample")
     named = f"the columns {listed(table.names)}"
     missing = "a time column t" if timed and "t" not in numbers else f"{WANTED_CHANNELS} beside it"
     roles = guess_roles(table)

@@ -26,7 +26,10 @@ def numbers_of(table: Table, column: Column, channel: str, where: str) -> np.nda
         When it is text: names the first cell that is no number.
     """
     if column.values.dtype.kind == "U":
-        row, cell = next((r, c) for r, c in enumerate(column.values) if not _is_number(c))
+        wrong_cells = ((row, cell) for row, cell in enumerate(column.values) if not _is_number(cell))
+        row, cell = next(wrong_cells, (None, ""))
+        if row is None:
+            return column.values.astype(float)
         found = f'"{cell[:40]}"' if cell else "an empty cell"
         raise wrong(f"{where} {table.place(row)}, column {column.name}", found, "a number")
     return checks.real_vector(column.values, column.name or channel, where)

@@ -16,7 +16,7 @@ from .clocks import times_of
 from .columns import Picked, column_number
 from .conversion import numbers_of, stated_units
 from .files import read_table
-from .mending import mended
+from .findings.mend import before
 from .header_units import split_unit
 from .options import ReadOptions
 from .resample import resampled
@@ -106,8 +106,8 @@ def series_of(table: Table, channel: str | None, options: ReadOptions, where: st
             known[name] = like[0]
     name, index = _wanted(table, channel, known, where)
     if index == known.get("t"):
-        found = f"the times, {table.columns[index].name}, as the channel to judge"
-        raise wrong(where, found, "a measured channel (--channel NAME)")
+        times = f"the times, {table.columns[index].name}, as the channel to judge"
+        raise wrong(where, times, "a measured channel (--channel NAME)")
     driven = next((one for one in ("x", "F") if one in known and known[one] != index), None)
     numbers = {name: index} | ({driven: known[driven]} if driven else {})
     if "t" in known:
@@ -120,11 +120,10 @@ def series_of(table: Table, channel: str | None, options: ReadOptions, where: st
         warnings.warn(f"{where}: {note}", UserWarning, stacklevel=3)
     for one, values in found.items():
         checks.same_length(values, one, t, where)
-    found = mended(found, options, where)
-    for one, values in found.items():
+    for one, values in {"t": t, **found}.items():
         checks.finite(values, one, where, table.place)
+    t, found, _ = before(t, found, {}, options)
     checks.long_enough(t, where)
-    checks.finite(t, "t", where, table.place)
     time_axis.increasing(t, where)
     if options.resample:
         t, found = resampled(t, found, None if options.resample is True else float(options.resample), where)

@@ -6,7 +6,6 @@ channels are compared; and the findings come last, of the rows as they were meas
 
 from __future__ import annotations
 
-import dataclasses
 import math
 import warnings
 from collections.abc import Collection, Mapping
@@ -26,8 +25,7 @@ from .conversion import in_si
 from .files import read_table
 from .finding import ASK, REFUSE, Finding
 from .findings import find, find_in_times
-from .findings.mend import after
-from .mending import mended
+from .findings.mend import after, before
 from .options import ReadOptions
 from .record import Record
 from .resample import resampled
@@ -110,13 +108,13 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
     _check(options)
     clocked = any(column.clock is not None for column in table.columns)
     picked = pick(table, options.columns, where, timed=options.rate is None and not clocked)
+    _named(picked, options, where)
     channels, notes = in_si(table, picked, options, where)
     t, told = times_of(table, picked, options, where)
     _whole(t, channels, table, where, options)
     channels, compared = on_one_clock(table, picked, t, channels, options, where)
     for note in (*table.notes, *picked.notes, *notes, *told, *compared):
         warnings.warn(f"{where}: {note}", UserWarning, stacklevel=3)
-    channels = mended(channels, options, where)
     extras = {name: values for name, values in picked.extras.items() if values.shape == t.shape}
     if compared:
         t, channels, extras = _covered(t, channels, extras)
@@ -125,7 +123,14 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
         channels = bridged(t, channels, table, where)
     for name, values in {"t": t, **channels}.items():
         checks.finite(values, name, where, table.place)
-    findings = _found(t, channels, extras, picked, options, where)
+    stated = frozenset(options.units) | {name for name, column in picked.channels.items() if column.unit}
+    findings = find_in_times(t, options, units_stated=stated)
+    _refuse(findings, where)
+    t, channels, extras = before(t, channels, extras, options)
+    findings += find(t, channels, extras, options, units_stated=stated, rate_hz=options.rate)
+    _refuse(findings, where)
+    for finding in findings:
+        warnings.warn(finding.sentence(where), UserWarning, stacklevel=3)
     t, channels, extras = after(t, channels, extras, findings)
     if options.resample:
         time_axis.increasing(t, where)
@@ -136,7 +141,7 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
 
 
 def _check(options: ReadOptions) -> None:
-    """Refuse numbers that cannot be meant."""
+    """Refuse numbers that cannot be meant, and channels that no record has."""
     for option, value in (("--rate", options.rate), ("--ratio", options.ratio)):
         if value is not None and not (math.isfinite(value) and value != 0.0 and (value > 0.0 or option == "--ratio")):
             raise wrong(option, f"{value:g}", "a positive number")
@@ -144,6 +149,16 @@ def _check(options: ReadOptions) -> None:
         raise wrong("--skip", str(options.skip), "a number of lines, zero or more")
     if options.decimal not in (None, ".", ","):
         raise wrong("--decimal", f'"{options.decimal}"', '"." or ","')
+
+
+def _named(picked: Picked, options: ReadOptions, where: str) -> None:
+    """Refuse options that name a channel which the record does not have."""
+    for option, named in (("--sign", options.sign), ("--unwrap", options.unwrap), ("--despike", options.despike)):
+        absent = sorted(named - set(picked.channels))
+        if absent:
+            raise wrong(where, f"no channel {absent[0]}, which {option} names", f"one of {checks.listed(picked.channels)}")
+    if options.ratio is not None and "x" not in picked.channels:
+        raise wrong(where, "no channel x, of which --ratio gives the turns", f"one beside {checks.listed(picked.channels)}")
 
 
 def _whole(t: np.ndarray, channels: dict[str, np.ndarray], table: Table, where: str, options: ReadOptions) -> None:
@@ -179,18 +194,11 @@ def _between(t, channels, extras, options: ReadOptions, where: str):
     return t[rows], {n: v[rows] for n, v in channels.items()}, {n: v[rows] for n, v in extras.items()}
 
 
-def _found(t, channels, extras, picked: Picked, options: ReadOptions, where: str) -> list[Finding]:
-    """What the checks found: refused or asked about, or warned of and handed on."""
-    stated = frozenset(options.units) | {name for name, column in picked.channels.items() if column.unit}
-    findings = find_in_times(t, options, units_stated=stated)
-    findings += find(t, channels, extras, options, units_stated=stated, rate_hz=options.rate)
+def _refuse(findings: list[Finding], where: str) -> None:
+    """Raise the first finding that refuses the record or asks about it."""
     for finding in findings:
         if finding.action in (REFUSE, ASK):
-            remedy = finding.remedy if finding.remedy.startswith("--") else ""
-            raise BadInput(finding.sentence(where), remedy=remedy)
-    for finding in findings:
-        warnings.warn(finding.sentence(where), UserWarning, stacklevel=4)
-    return findings
+            raise BadInput(finding.sentence(where), remedy=finding.remedy if finding.remedy.startswith("--") else "")
 
 
 def _even(t, channels, extras, options: ReadOptions, where: str):
@@ -210,8 +218,3 @@ def _confirmed(picked: Picked, options: ReadOptions) -> frozenset[str]:
         return confirmed | {"t"}
     column = picked.channels["t"]
     return confirmed | {"t"} if column.unit or column.values.dtype.kind == "U" else confirmed
-
-
-def replaced(options: ReadOptions, **changes) -> ReadOptions:
-    """The options with some of them changed."""
-    return dataclasses.replace(options, **changes)

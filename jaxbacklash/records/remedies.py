@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import shlex
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from .mappings import parse_channels, parse_columns, parse_scales, parse_units
 from .options import ReadOptions
@@ -17,30 +17,31 @@ REPLACING = ("--columns", "--rate", "--ratio", "--from", "--to", "--decimal", "-
 
 def applied(options: ReadOptions, remedy: str) -> ReadOptions:
     """The options with a remedy, "--unwrap x" or "--columns x=enc1 --rate 500", added to them."""
+    change: Callable[..., ReadOptions] = dataclasses.replace
     for option, value in _words(remedy):
         if option == "--columns":
-            options = dataclasses.replace(options, columns={**options.columns, **parse_columns(value)})
+            options = change(options, columns={**options.columns, **parse_columns(value)})
         elif option == "--unit":
-            options = dataclasses.replace(options, units={**options.units, **parse_units(value)})
+            options = change(options, units={**options.units, **parse_units(value)})
         elif option == "--scale":
-            options = dataclasses.replace(options, scales={**options.scales, **parse_scales(value)})
+            options = change(options, scales={**options.scales, **parse_scales(value)})
         elif option in ("--unwrap", "--sign", "--despike"):
             name = option[2:]
-            options = dataclasses.replace(options, **{name: getattr(options, name) | parse_channels(value, option)})
+            options = change(options, **{name: getattr(options, name) | parse_channels(value, option)})
         elif option == "--accept":
-            options = dataclasses.replace(options, accept=options.accept | frozenset(value.split(",")))
+            options = change(options, accept=options.accept | frozenset(value.split(",")))
         elif option == "--resample":
-            options = dataclasses.replace(options, resample=True)
+            options = change(options, resample=True)
         elif option == "--resample-rate":
-            options = dataclasses.replace(options, resample=float(value))
+            options = change(options, resample=float(value))
         elif option in ("--rate", "--ratio"):
-            options = dataclasses.replace(options, **{option[2:]: float(value)})
+            options = change(options, **{option[2:]: float(value)})
         elif option in ("--from", "--to"):
-            options = dataclasses.replace(options, **{"start" if option == "--from" else "stop": float(value)})
+            options = change(options, **{"start" if option == "--from" else "stop": float(value)})
         elif option == "--skip":
-            options = dataclasses.replace(options, skip=int(value))
+            options = change(options, skip=int(value))
         elif option == "--decimal":
-            options = dataclasses.replace(options, decimal=value)
+            options = change(options, decimal=value)
     return options
 
 
