@@ -62,6 +62,24 @@ def fresh(values: np.ndarray) -> slice:
     return slice(int(np.bincount(changes % every).argmax()), None, every)
 
 
+def _from_rest(channels: dict[str, np.ndarray], turned: dict[str, float]) -> dict[str, np.ndarray]:
+    """Unwrapped positions, counted from where the base begins; ``turned`` holds the turn of each.
+
+    An encoder that begins anew amid the motion has its zero half a turn from it: not where the joint rests. Where the record
+    begins is the better zero, for gravity and what else depends on the place. Of y less x, and of z, only whole turns are taken:
+    their zero is the middle of the play.
+    """
+    channels = dict(channels)
+    base = "x" if "x" in channels else "y"
+    if base in turned:
+        begin = float(channels[base][0])
+        channels |= {name: channels[name] - begin for name in ("x", "y") if name in channels}
+    for name in turned.keys() - {base}:
+        apart = channels[name] - channels["x"] if name == "y" else channels[name]
+        channels[name] = channels[name] - turned[name] * np.round(np.median(apart) / turned[name])
+    return channels
+
+
 def before(
     t: np.ndarray, channels: dict[str, np.ndarray], extras: dict[str, np.ndarray], options: ReadOptions
 ) -> tuple[np.ndarray, dict[str, np.ndarray], dict[str, np.ndarray]]:
@@ -78,20 +96,27 @@ def before(
     Returns
     -------
     t, channels, extras
-        Of shape (M,): where a channel of `despike` has a new value every k-th row only, those are kept, M = N / k. What stands
-        between them would bring noise that is not independent from sample to sample, and make every interval too narrow.
+        Of shape (M,). Positions that jumped by a turn count from where the record begins. Where a channel of `despike` has a new
+        value every k-th row only, those rows are kept, M = N / k: what stands between them would bring noise that is not
+        independent from sample to sample, and make every interval too narrow.
     """
     mended = dict(channels)
+    turned = {}
     for name, values in channels.items():
         if name in options.sign:
             values = -values
         if name == "x" and options.ratio is not None:
             values = values / options.ratio
-        if name in options.unwrap:
-            values = unshift(unwrap(values))
         if name in options.despike and held.refreshed_every(values) == 1:
             values = despiked(values)
+        if name in options.unwrap:
+            jumped = jumps.turn_of(values)
+            if jumped is not None:
+                turned[name] = jumped[0]
+                values = unwrap(values, jumped[0])
+            values = unshift(values)
         mended[name] = values
+    mended = _from_rest(mended, turned)
     for name in sorted(options.despike & mended.keys()):
         rows = fresh(mended[name])
         if rows != slice(None):

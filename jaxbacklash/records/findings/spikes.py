@@ -15,6 +15,10 @@ CLEAR = 20.0
 percent; this far above noise the other 14 tell them apart."""
 FAR_OUT = 2.0
 """Ranges of all other samples by which a code such as -9999 lies beyond them."""
+TOGETHER, LONGEST = 4, 40
+"""Samples that may stand out near one another, and rows over which they may."""
+ADJACENT = 5.0
+"""Times as clear that samples next to one another must be."""
 FROM_ZERO = 8.0
 """Times the steps around it by which the samples before and after a failed reading written as 0 are off zero."""
 BESIDE = 9
@@ -102,7 +106,7 @@ def _zeros(values: np.ndarray) -> np.ndarray:
     if not first.size:
         return _NONE
     before, after = values[first - 1], values[last + 1]
-    steps = np.abs(np.diff(values))
+    steps = np.abs(np.diff(bridge(values, np.flatnonzero(zero))))
     near = np.arange(2, BESIDE)
     usual = np.maximum(
         np.max(steps[np.maximum(first[:, None] - near, 0)], axis=1),
@@ -112,40 +116,58 @@ def _zeros(values: np.ndarray) -> np.ndarray:
     nearest = np.minimum(np.abs(before), np.abs(after))
     # A coarse encoder's noise is counts to and fro, and rests in between.
     sure = (before * after > 0) & (nearest > FROM_ZERO * np.maximum(usual, quantum(values)))
-    if np.count_nonzero(sure) < 3:
-        rows = [np.arange(a, b + 1) for a, b in zip(first[sure], last[sure], strict=True)]
-        return np.concatenate([_NONE, *rows])
-    off = np.abs(before + after) / 2 > 2 * usual
-    return np.concatenate([_NONE, *(np.arange(a, b + 1) for a, b in zip(first[sure | off], last[sure | off], strict=True))])
+    if np.count_nonzero(sure) >= 3:
+        # So finely read that hardly a crossing of zero hits it: then the others are failed readings too.
+        crossings = np.count_nonzero(values[1:] * values[:-1] < 0)
+        hits = crossings * quantum(values) / max(float(np.median(steps)), 1e-300)
+        sure |= (np.abs(before + after) / 2 > 2 * usual) | (hits < 0.5)
+    return np.concatenate([_NONE, *(np.arange(a, b + 1) for a, b in zip(first[sure], last[sure], strict=True))])
 
 
 def spike_rows(values: np.ndarray) -> np.ndarray:
-    """Rows of single samples that stand out, up to three in a row."""
-    found = _NONE
+    """Rows (from 0) of samples that stand out of the motion, alone or a few near one another."""
     r = surprise(values)
     floor = max(level(r) * SURPRISE_OF_NOISE, 0.3 * quantum(values))
-    for _ in range(3):  # spikes close together hide one another
-        rows = np.flatnonzero(np.abs(r) > 0.5 * CLEAR * floor)
-        if not rows.size or rows.size > MOST * 5 * values.size:
+    size = np.abs(r)
+    rows = np.flatnonzero(size > 0.4 * CLEAR * floor)
+    rows = rows[(rows >= 4) & (rows < values.size - 4)]
+    if not rows.size or rows.size > 5 * MOST * values.size:
+        return _NONE
+    usual = np.maximum(around(size, rows), floor)
+    # At least the middle of a spike, six parts of nine of all that it leaves, is as clear as that.
+    rows = rows[size[rows] > 0.6 * CLEAR * usual]
+    if not rows.size:
+        return _NONE
+    found = [_spikes_of(r, cluster, floor) for cluster in np.split(rows, np.flatnonzero(np.diff(rows) > 4) + 1)]
+    every = np.concatenate([_NONE, *found])
+    return every if every.size <= MOST * values.size else _NONE
+
+
+def _spikes_of(r: np.ndarray, cluster: np.ndarray, floor: float) -> np.ndarray:
+    """The fewest samples of a cluster of surprises that, being off, explain all of it; none where a few do not."""
+    low, high = int(cluster[0]) - 2, int(cluster[-1]) + 3
+    if high - low > LONGEST:
+        return _NONE
+    seen = r[low:high]
+    # The surprises that each sample of the stretch would leave, if it were off by 1.
+    inner = np.arange(2, seen.size - 2)
+    left_by = np.zeros((seen.size, inner.size))
+    for column, row in enumerate(inner):
+        left_by[row - 2 : row + 3, column] = _SPIKE
+    usual = max(float(around(np.abs(r), np.array([low + 2, high - 3]), share=0.75).max()), floor)
+    chosen: list[int] = []
+    left, sizes = seen, np.zeros(0)
+    while len(chosen) < min(TOGETHER, inner.size):
+        chosen.append(int(np.argmax(np.abs(left_by.T @ left))))
+        sizes = np.linalg.lstsq(left_by[:, chosen], seen, rcond=None)[0]
+        left = seen - left_by[:, chosen] @ sizes
+        if np.sqrt(np.mean(left**2)) < 1.8 * usual + 0.02 * float(np.max(np.abs(sizes))):
             break
-        new = _single(r, rows, floor)
-        if not new.size:
-            break
-        found = np.union1d(found, new)
-        r = surprise(bridge(values, found))
-    return found if found.size <= MOST * values.size else _NONE
+    else:
+        return _NONE
+    # Several next to one another may bend to whatever shape; then they must be clearer.
+    clear = CLEAR if np.min(np.diff(np.sort(chosen)), initial=9) > 2 else ADJACENT * CLEAR
+    return np.sort(inner[chosen]) + low if float(np.min(np.abs(sizes))) > clear * usual else _NONE
 
 
 _SPIKE = np.array([1.0, -4.0, 6.0, -4.0, 1.0]) / 6.0
-
-
-def _single(r: np.ndarray, rows: np.ndarray, floor: float) -> np.ndarray:
-    """The rows at which the surprises are those of one sample that is off, and of nothing else."""
-    rows = rows[(rows >= 4) & (rows < r.size - 4)]
-    if not rows.size:
-        return _NONE
-    usual = np.maximum(around(np.abs(r), rows), floor)
-    seen = r[rows[:, None] + np.arange(-2, 3)]
-    size = seen @ _SPIKE / (_SPIKE @ _SPIKE)
-    left = np.sqrt(np.mean((seen - size[:, None] * _SPIKE) ** 2, axis=1))
-    return rows[(np.abs(size) > CLEAR * usual) & (left < 1.8 * usual + 0.02 * np.abs(size))]
