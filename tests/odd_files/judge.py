@@ -45,10 +45,11 @@ class Verdict:
 def judge(draft: Draft, folder: Path, full: bool = False) -> Verdict:
     """Write a draft into a folder, run its command, and judge."""
     draft.write(folder)
-    return _judged(draft, folder, draft.command(), full, 0)
+    return judged(draft, folder, draft.command(), full)
 
 
-def _judged(draft: Draft, folder: Path, words: Sequence[str], full: bool, hop: int) -> Verdict:
+def judged(draft: Draft, folder: Path, words: Sequence[str], full: bool, hop: int = 0) -> Verdict:
+    """The same for a file that is there, with the words of a command."""
     outcome = call([*words, "--json"], folder) if full else read_only(words, folder)
     command = shell(words)
     if outcome.code == CRASH or "Traceback" in outcome.err:
@@ -86,7 +87,7 @@ def _followed(draft: Draft, folder: Path, words: Sequence[str], full: bool, hop:
         second = pasted(words, (true or texts)[0], folder, KNOWN)
     except ValueError as why:
         return Verdict(PASTE, command, str(why))
-    verdict = _judged(draft, folder, second, full, hop + 1)
+    verdict = judged(draft, folder, second, full, hop + 1)
     if verdict.found in (UNREAD, MESSAGE):
         return Verdict(PASTE, verdict.command, verdict.detail)
     return verdict if verdict.failed else Verdict(REFUSED, verdict.command, sentence)
