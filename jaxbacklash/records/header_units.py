@@ -110,11 +110,15 @@ def split_unit(name: str) -> tuple[str, str]:
         r"(.*?)[\s_]*[(]\s*(.+?)\s*[)]",
         r"(.*?)\s*[{<]\s*(.+?)\s*[}>]",
         r"(.+?)\s*[,;:]\s*(.+)",
-        r"(.+?)\s+in\s+(.+)",
+        r"(.*?)\s*\bin\s+(.+)",
     ):
         found = re.fullmatch(pattern, name, re.IGNORECASE)
         if found and is_unit(found[2]):
             return found[1], found[2]
+    # "Time (s) Run #1": the unit in the middle.
+    found = re.fullmatch(r"(.+?)\s*[\[(]\s*([^\[\]()]+?)\s*[\])]\s+(.+)", name)
+    if found and is_unit(found[2]):
+        return f"{found[1]} {found[3]}", found[2]
     # "z/rad", "v / (m/s)"; but "m/s" alone is a unit and no name, and "rig/z" a group and its channel.
     bare, slash, unit = name.partition("/")
     if slash and bare.strip() and not is_unit(name) and is_unit(unit.strip()):

@@ -50,7 +50,7 @@ def read_cells(layout: Layout) -> tuple[list[Sequence[str]], np.ndarray, list[st
     kept = [
         row
         for row, cells in enumerate(rows)
-        if cells and not (cells[0][:1] in _MARKS and _passed(lines[row], layout)) and (len(cells) > 1 or cells[0].strip())
+        if cells and not (cells[0][:1] in _MARKS and _passed(lines[row], layout)) and (len(cells) > 1 or cells[0].strip(" \x1a"))
     ]
     kept = _without_repeats(kept, rows, lines, layout, notes)
     kept = _without_footer(kept, rows, lines, layout, notes)
@@ -118,7 +118,7 @@ def _without_repeats(kept: list[int], rows: list[list[str]], lines: list[str], l
     repeated = frozenset(layout.repeated)
     if not repeated:
         return kept
-    again = [place for place, row in enumerate(kept) if lines[row].strip() in repeated]
+    again = [place for place, row in enumerate(kept) if lines[row].strip(" \t\r\n\ufeff") in repeated]
     if not again:
         return kept
     dropped = set()

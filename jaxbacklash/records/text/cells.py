@@ -20,6 +20,7 @@ ABSENT = frozenset(["", *_NONE.split()])
 BLANKS = " \u00a0\u2009\u202f"
 """A blank, one that does not break, and two thin ones: marks of thousands in some languages."""
 
+_TEXT_MARKS = frozenset("'=")
 _DIGITS = re.compile(
     r"[-+\u2212]?(?:"
     r"\d{1,3}(?:[ '\u2019.,\u00a0\u2009\u202f]\d{3})+(?:[.,]\d+)?"  # 1 234,5
@@ -38,6 +39,8 @@ _WITH_UNIT = re.compile(r"([-+\u2212]?(?:\d+\.?|\d*[.,]\d+)(?:[eEdD][-+\u2212]?\
 
 def kind(cell: str) -> str:
     """The kind of a cell that is stripped of blanks: `NUMBER`, `STAMP`, `MISSING` or `WORD`."""
+    # Spreadsheets mark numbers that are kept as text: '0.5 or ="0.5".
+    cell = cell.strip("'=\"") if cell[:1] in _TEXT_MARKS else cell
     if _DIGITS.fullmatch(cell):
         return NUMBER
     if cell.lower() in ABSENT:

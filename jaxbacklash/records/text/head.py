@@ -16,6 +16,9 @@ WINDOWS = (150, 1200, 10000)
 """Lines looked at first, and as many more where rows of values do not fill the end of what was looked at."""
 
 COMMENT = re.compile(r'\s*(?:"?(?:#(?!N/A|NV|VALUE|DIV|NUM|REF)|%|//)|!(?=\s|$))')
+LINES_OF_A_CELL = 6
+"""A quoted name may span as many lines; a quotation mark without an end within them is an inch."""
+
 ENOUGH = 0.45
 """A separator that finds less than this share of the values of another is out of the question."""
 
@@ -65,7 +68,7 @@ class Run:
 
 
 def read_lines(file: TextIO, first: int, count: int, where: str) -> list[Line]:
-    """Up to ``count`` lines; refuses one that is no line of a table, and a NUL byte."""
+    """Up to ``count`` lines from line ``first`` on; refuses one that is too long for a line of a table."""
     lines = []
     for number in range(first, first + count):
         text = file.readline(LONGEST_LINE + 1)
@@ -76,6 +79,26 @@ def read_lines(file: TextIO, first: int, count: int, where: str) -> list[Line]:
             raise wrong(f"{where} line {number}", f"a line of more than {LONGEST_LINE} characters", wanted)
         lines.append(Line(number, text, COMMENT.match(text) is not None))
     return lines
+
+
+def with_whole_cells(lines: list[Line]) -> list[Line]:
+    """Lines of which those are joined that a quoted cell spans, as names in spreadsheets do ("Time" above "[s]")."""
+    whole: list[Line] = []
+    rest = iter(range(len(lines)))
+    for index in rest:
+        line = lines[index]
+        if line.text.count('"') % 2 and not line.comment:
+            end = next(
+                (more for more in range(index + 1, min(index + LINES_OF_A_CELL, len(lines))) if lines[more].text.count('"') % 2),
+                None,
+            )
+            if end is not None:
+                parts = [each.text.strip("\r\n") for each in lines[index : end + 1]]
+                line = Line(line.number, " ".join(parts) + "\n", False)
+                for _ in range(end - index):
+                    next(rest)
+        whole.append(line)
+    return whole
 
 
 class Head:

@@ -76,7 +76,7 @@ def find_names(head: Head, run: Run, where: str) -> Names:
     names = tuple(name or f"column {place}" for place, name in enumerate(cells, 1))
     stated = tuple(unit or split_unit(name)[1] for unit, name in zip([*units, *[""] * width], names, strict=False))
     first = min(row for row, _ in used)
-    texts = tuple(head.lines[row].text.strip() for row, _ in used)
+    texts = tuple(head.lines[row].text.strip(" \t\r\n\ufeff") for row, _ in used)
     return Names(names, stated, first, head.lines[index].number, texts, tuple(notes), rate)
 
 

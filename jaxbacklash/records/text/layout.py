@@ -9,10 +9,18 @@ from jaxbacklash.errors import BadInput
 
 from ..checks import wrong
 from .cells import MISSING, NUMBER, STAMP, WORD
-from .head import SEPARATORS, WINDOWS, Head, Line, Run, read_lines
+from .head import NAMES, SEPARATORS, WINDOWS, Head, Line, Run, read_lines, with_whole_cells
 from .header import find_names
 from .opening import Source
 from .statements import stated_rate
+
+ENCODINGS = {
+    "utf-8-sig": "utf-8",
+    "cp1252": "Windows-1252 (Latin-1)",
+    "utf-16-le": "utf-16 (little end first)",
+    "utf-16-be": "utf-16 (big end first)",
+}
+"""Encodings by Python's names, where those are not what people say."""
 
 STATED_SEPARATOR = re.compile(r'\ufeff?\s*"?sep=(.)"?\s*', re.IGNORECASE)
 """The first line by which Excel is told the separator."""
@@ -61,6 +69,21 @@ class Layout:
     passed: str
     notes: tuple[str, ...]
     rate_hz: float | None
+
+    def details(self, mark: str, skip: int) -> dict[str, str]:
+        """How the file is read, for a person; ``mark`` is the decimal mark, ``skip`` the lines passed over unseen."""
+        details = {"encoding": ENCODINGS.get(self.source.encoding, self.source.encoding)}
+        if self.source.gzip:
+            details["packed"] = "gzip"
+        details["separator"] = NAMES.get(self.separator, str(self.separator))
+        details["decimal mark"] = {".": "point", ",": "comma"}[mark]
+        details["header line"] = "none" if self.header_line is None else str(self.header_line)
+        details["first line of values"] = str(self.first_line)
+        if self.passed:
+            details["lines passed over"] = self.passed
+        if skip:
+            details["lines skipped"] = str(skip)
+        return details
 
 
 def find_layout(source: Source, skip: int) -> Layout:
@@ -129,7 +152,7 @@ def _look(source: Source, skip: int) -> tuple[Head, Run | None]:
             more = read_lines(file, skip + len(lines) + 1, wanted, where)
             lines += more
             stated = STATED_SEPARATOR.fullmatch(lines[0].text) if lines else None
-            head = Head(lines[1:] if stated else lines)
+            head = Head(with_whole_cells(lines[1:] if stated else lines))
             run = head.best((_mark(stated[1]),) if stated else SEPARATORS)
             ended = len(more) < wanted
             if ended or (

@@ -8,14 +8,11 @@ import numpy as np
 
 from ..table import Column, Table
 from .by_cell import read_cells
-from .head import NAMES
-from .layout import Layout, find_layout
+from .layout import find_layout
 from .numbers import read_numbers
 from .opening import open_text
 from .plain import read_plain
-
-ENCODINGS = {"utf-8-sig": "utf-8", "cp1252": "Windows-1252 (Latin-1)", "utf-16-le": "utf-16 (little end first)"}
-ENCODINGS["utf-16-be"] = "utf-16 (big end first)"
+from .turned import lies_on_its_side, read_turned
 
 
 def read_text(path: Path, skip: int = 0, decimal: str | None = None) -> Table:
@@ -47,6 +44,8 @@ def read_text(path: Path, skip: int = 0, decimal: str | None = None) -> Table:
     ['Time [s]', 'x [deg]', 'z [deg]']
     """
     layout = find_layout(open_text(path), skip)
+    if lies_on_its_side(layout):
+        return read_turned(layout, decimal)
     units, notes = list(layout.units), list(layout.notes)
     lines: np.ndarray | None
     plain = read_plain(layout, decimal)
@@ -68,25 +67,9 @@ def read_text(path: Path, skip: int = 0, decimal: str | None = None) -> Table:
     return Table(
         columns=tuple(map(Column, layout.names, columns, units)),
         format="csv",
-        details=_details(layout, mark, skip),
+        details=layout.details(mark, skip),
         notes=tuple(notes),
         rate_hz=layout.rate_hz,
         first_line=layout.first_line,
         lines=lines,
     )
-
-
-def _details(layout: Layout, mark: str, skip: int) -> dict[str, str]:
-    """How the file was read, for a person."""
-    details = {"encoding": ENCODINGS.get(layout.source.encoding, layout.source.encoding)}
-    if layout.source.gzip:
-        details["packed"] = "gzip"
-    details["separator"] = NAMES.get(layout.separator, str(layout.separator))
-    details["decimal mark"] = {".": "point", ",": "comma"}[mark]
-    details["header line"] = "none" if layout.header_line is None else str(layout.header_line)
-    details["first line of values"] = str(layout.first_line)
-    if layout.passed:
-        details["lines passed over"] = layout.passed
-    if skip:
-        details["lines skipped"] = str(skip)
-    return details
