@@ -49,7 +49,7 @@ def trial(
     from jaxbacklash.criticism.refine import refine
     from jaxbacklash.criticism.search import Search
     from jaxbacklash.criticism.workbench import Workbench
-    from jaxbacklash.fitting.fit import SCORE_WINDOW
+    from jaxbacklash.fitting.lengths import SCORE_WINDOW
     from jaxbacklash.fitting.setup import base_system
 
     sign = -1.0 if name is not None and not one_sided(name) and of.seed % 2 else 1.0

@@ -67,7 +67,12 @@ Inertia = Annotated[
 Out = Annotated[Path | None, typer.Option("--out", help="Folder for result.json, model.toml and report.html")]
 Json = Annotated[bool, typer.Option("--json", help="Print the machine-readable result and nothing else")]
 Seed = Annotated[int, typer.Option("--seed", help="Seed of everything random")]
-Window = Annotated[float, typer.Option("--window", help="Length of the windows whose prediction error is quoted [s]")]
+Window = Annotated[
+    float | None,
+    typer.Option(
+        "--window", help="Length of the windows whose prediction error is quoted [s]; default 0.2 s, or 32 samples if longer"
+    ),
+]
 Translation = Annotated[bool, typer.Option("--translation", help="The record is of a translating mass: m, kg, N")]
 Laws = Annotated[Path | None, typer.Option("--laws", help="A Python file with effect classes of your own")]
 Heldout = Annotated[
@@ -105,7 +110,7 @@ def fit(
     out: Out = None,
     json: Json = False,
     reading: Reading = AS_IT_IS,
-    window: Window = 0.2,
+    window: Window = None,
     starts: Annotated[int, typer.Option("--starts", help="How many starting points are tried")] = 4,
     profile: Annotated[bool, typer.Option("--profile", help="Intervals from the profile likelihood (slower)")] = False,
     translation: Translation = False,
@@ -132,7 +137,7 @@ def compare(
     out: Out = None,
     json: Json = False,
     reading: Reading = AS_IT_IS,
-    window: Window = 0.2,
+    window: Window = None,
     translation: Translation = False,
     seed: Seed = 0,
 ) -> None:
@@ -158,7 +163,7 @@ def diagnose(
     out: Out = None,
     json: Json = False,
     reading: Reading = AS_IT_IS,
-    window: Window = 0.2,
+    window: Window = None,
     starts: Annotated[int, typer.Option("--starts", help="How many starting points are tried")] = 4,
     translation: Translation = False,
     seed: Seed = 0,
@@ -185,7 +190,7 @@ def refine(
     out: Out = None,
     json: Json = False,
     reading: Reading = AS_IT_IS,
-    window: Window = 0.2,
+    window: Window = None,
     translation: Translation = False,
     seed: Seed = 0,
 ) -> None:

@@ -169,12 +169,13 @@ def _adaptive(args: Driven, state: Any, dt: Any, samples: int, rtol: float, atol
 
 def measured_base(record: Record) -> Sampled:
     """The measured drive of a record as an excitation: base motion through its smoothing spline, force by straight lines."""
-    from .signals import choose_intervals, fit_spline  # scipy's splines load a sixth of a second, for which a map need not wait
+    # scipy's splines load a sixth of a second, for which a map need not wait
+    from .signals import choose_intervals, fit_spline, span
 
     x = dx = np.zeros(record.samples)
     if "x" in record.channels:
         values = record.channels["x"]
-        spacing = 0.1 / choose_intervals(record.t, values, 0.1)
+        spacing = span(record.dt) / choose_intervals(record.t, values, span(record.dt))
         spline = fit_spline(record.t, values, record.t[0], spacing)
         x, dx = spline(record.t), spline(record.t, 1)
     force = record.channels.get("F", np.zeros(record.samples))

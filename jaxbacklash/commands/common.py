@@ -34,9 +34,9 @@ def model_of_file(model: str, inertia: float | None) -> System | None:
     return load_model(model)
 
 
-def check_window(window: float) -> None:
+def check_window(window: float | None) -> None:
     """Refuse a window length [s] that no score can be quoted for."""
-    if not 0.02 <= window <= 10.0:
+    if window is not None and not 0.02 <= window <= 10.0:
         raise BadInput(f"--window {window:g}: wanted a length between 0.02 and 10 s")
 
 

@@ -21,7 +21,7 @@ def run(
     out: Path | None,
     as_json: bool,
     reading: Reading,
-    window: float,
+    window: float | None,
     translational: bool,
 ) -> None:
     """Read both, predict window by window, print; write the result and the report when a folder is given."""

@@ -30,7 +30,7 @@ def run(
     out: Path | None,
     as_json: bool,
     reading: Reading,
-    window: float,
+    window: float | None,
     starts: int,
     translational: bool,
     seed: int,

@@ -29,7 +29,7 @@ def run(
     out: Path | None,
     as_json: bool,
     reading: Reading,
-    window: float,
+    window: float | None,
     starts: int,
     profile: bool,
     translational: bool,

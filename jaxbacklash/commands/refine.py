@@ -34,7 +34,7 @@ def run(
     out: Path | None,
     as_json: bool,
     reading: Reading,
-    window: float,
+    window: float | None,
     translational: bool,
     seed: int,
 ) -> None:

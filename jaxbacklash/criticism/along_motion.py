@@ -14,7 +14,7 @@ from ..fitting.force import force_edges
 from ..mechanics import AbstractEffect, Drive, canonical_name
 from ..parameters import ravel, unravel
 from ..records import Record
-from ..signals import choose_intervals, fit_spline
+from ..signals import choose_intervals, fit_spline, span
 from ..system import System
 
 FINEST = 5e-4
@@ -43,9 +43,9 @@ class Motion:
         return max(1, int(np.ceil(float(np.median(np.diff(self.t))) / FINEST - 1e-9)))
 
 
-def motion(record: Record, window: float = 0.1) -> Motion:
+def motion(record: Record) -> Motion:
     """Smoothed motion of link and base."""
-    t, zero = record.t, np.zeros(record.samples)
+    t, zero, window = record.t, np.zeros(record.samples), span(record.dt)
 
     def smooth(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         if not np.any(values):

@@ -16,7 +16,7 @@ from ..errors import BadInput, NoAnswer
 from ..fitting import Fit
 from ..fitting.loop import read_plateau
 from ..pointwise import along
-from ..signals import choose_intervals, fit_spline
+from ..signals import choose_intervals, fit_spline, span
 from ..skeletons import Skeleton, Skeletons, skeleton
 
 AGREE = 3.0
@@ -178,8 +178,9 @@ def _loads(fit: Fit) -> np.ndarray | None:
     return whole.torque - bare.torque
 
 
-def _smooth(t: np.ndarray, values: np.ndarray, window: float = 0.1) -> tuple[np.ndarray, np.ndarray]:
+def _smooth(t: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     if not np.any(values):
         return values, values
+    window = span(t[1] - t[0])
     spline = fit_spline(t, values, t[0], window / choose_intervals(t, values, window))
     return spline(t), spline(t, 1)

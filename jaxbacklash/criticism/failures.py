@@ -13,7 +13,7 @@ from scipy.ndimage import uniform_filter1d
 from scipy.special import chdtrc
 
 from ..records import Record
-from ..signals import choose_intervals, fit_spline
+from ..signals import choose_intervals, fit_spline, span
 from .latent import Latent
 
 PLACES = ("contact, negative side", "negative edge", "inside the play", "positive edge", "contact, positive side")
@@ -61,7 +61,8 @@ def excitation(record: Record, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Frequency [Hz] and amplitude [unit of the input] of what drives (of the motion, where nothing does), over about 1 s."""
     name = record.input_name or record.observed_name
     signal = record.channels[name]
-    smooth = fit_spline(record.t, signal, record.t[0], 0.1 / choose_intervals(record.t, signal, 0.1))
+    window = span(record.dt)
+    smooth = fit_spline(record.t, signal, record.t[0], window / choose_intervals(record.t, signal, window))
     value, rate = smooth(record.t), smooth(record.t, 1)
     length = max(3, round(1.0 / record.dt))
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from ..errors import NoAnswer
 from ..fitting import Fit
-from ..fitting.fit import SCORE_WINDOW, prepare
+from ..fitting.fit import prepare
 from ..fitting.setup import first_guess, free_names, make_problem
 from ..fitting.shooting import Blocks, Problem, Trajectory, Unknowns
 from ..parameters import unit_text, values, with_values
@@ -141,7 +141,7 @@ def missing_torque_of(
     system: System, record: Record, *, hold: bool = True, translational: bool = False, per_inertia: bool = False
 ) -> Latent:
     """The torque missing from a system with given parameters, at one record; see `missing_torque`."""
-    windows, _, _ = prepare(system, [record], SCORE_WINDOW)
+    windows, _, _ = prepare(system, [record], None)
     free = free_names(system)
     problem = make_problem(system, windows, free)
     unit = unit_text("N m", translational=translational, per_inertia=per_inertia)

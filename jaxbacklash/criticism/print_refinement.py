@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from ..fitting.print_fit import line
+from ..fitting.print_fit import at_most, line
 from ..parameters import channel_unit
 from .ranking import of_stage, table
 
@@ -64,7 +64,8 @@ def noise_lines(fit: Fit) -> list[str]:
     """The noise found in the record's channels."""
     seen, driver, moved_by = fit.records[0].observed_name, fit.records[0].input_name or "x", fit.input_noise[0]
     more = f", of {driver} {moved_by:.3g} {channel_unit(driver, translational=fit.translational)}" if moved_by else ""
-    return [f"  noise of {seen} {fit.noise[0]:.3g} {channel_unit(seen, translational=fit.translational)}{more}"]
+    unit = channel_unit(seen, translational=fit.translational)
+    return [f"  noise of {seen} {at_most(fit, seen)}{fit.noise[0]:.3g} {unit}{more}"]
 
 
 def alternatives_sentence(refinement: Refinement) -> str:

@@ -10,7 +10,6 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..fitting import Fit, Score
-from ..fitting.fit import SCORE_WINDOW
 from ..fitting.setup import make_problem
 from ..fitting.shooting import Unknowns
 from ..mechanics import AbstractEffect
@@ -85,7 +84,7 @@ def table(ranking: Ranking, most: int = 10) -> list[str]:
     return lines
 
 
-def rank_effects(fit: Fit, *, window: float = SCORE_WINDOW) -> Ranking:
+def rank_effects(fit: Fit, *, window: float | None = None) -> Ranking:
     """Every effect of the catalogue that a fitted model lacks, judged at the first of its records, best first.
 
     Parameters

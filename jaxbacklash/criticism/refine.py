@@ -14,8 +14,9 @@ from ..errors import BadInput
 from ..fitting.counts import few_counts
 from ..fitting.equation_error import Start
 from ..fitting.estimates import judge
-from ..fitting.fit import ABSOLUTE, SCORE_WINDOW, Fit, prepare
+from ..fitting.fit import ABSOLUTE, Fit, prepare
 from ..fitting.force import tell_way
+from ..fitting.left_over import why_open
 from ..fitting.score import Score, score
 from ..fitting.search import TIES, inverse_information, silent
 from ..fitting.setup import base_system, first_guess, free_names
@@ -88,7 +89,7 @@ def refine(
     model: str = "joint",
     inertia: float | None = None,
     system: System | None = None,
-    window: float = SCORE_WINDOW,
+    window: float | None = None,
     translational: bool = False,
     seed: int = 0,
     progress: Callable[[str, float], None] = silent,
@@ -103,7 +104,7 @@ def refine(
     model : ``"joint"``, ``"linear"`` or ``"free"``; ignored when ``system`` is given
     inertia : J [kg m^2]; None: fitted to force-driven records, else values are per unit inertia
     system : a system to start from instead of an estimate from the data
-    window : length of the windows whose error is quoted [s]
+    window : length of the windows whose error is quoted [s]; default 0.2 s, or 32 samples where that is longer
     translational : units of a translating mass
     seed : seed of everything random
     progress : told the stage in words and the share of the work done
@@ -205,6 +206,7 @@ class _Judge:
         return Fit(
             plain, free, estimates, scored, held, records, bench.layout.noise, bench.layout.input_noise, covariance, 1, 1,
             trial.tied, trial.cost, 0, self.start, self.model, self.per_inertia, self.translational, {}, joined, still,
+            (why_open(bench.record, bench.layout.noise[0], scored[0]),),
         )  # fmt: skip
 
     def _predict(self, problem: Problem) -> Score:

@@ -17,6 +17,7 @@ import numpy as np
 from ..fitting.fit import prepare
 from ..fitting.handed_on import handed_on
 from ..fitting.held import held, search_held
+from ..fitting.left_over import quieter_elsewhere
 from ..fitting.levenberg import Levenberg, Minimum, minimise
 from ..fitting.search import ADEQUATE, LOOSE, NEAR, TIES, freedom, tie_windows
 from ..fitting.setup import first_guess, free_names, held_system, make_problem, read_through
@@ -93,7 +94,7 @@ class Workbench:
     """
 
     def __init__(
-        self, record: Record, base: System, base_free: Iterable[str], window: float, beside: Record | None = None
+        self, record: Record, base: System, base_free: Iterable[str], window: float | None, beside: Record | None = None
     ) -> None:
         self.record, self.base, self.base_free, self.window = record, base, tuple(base_free), window
         self.windows: Windows
@@ -242,11 +243,8 @@ class Workbench:
         self.layout = replace(self.layout, noise=tuple(factor * n for n in self.layout.noise))
 
     def quieter_elsewhere(self, noise: float) -> float:
-        """By which factor the ``noise`` estimated from another record of the same joint is to be taken.
-
-        What made this record's estimate too large need not have been there: it is not taken for less than this record's noise.
-        """
-        return float(np.clip(self.layout.noise[0] / max(noise, 1e-300), self.noise_factor, 1.0))
+        """By which factor the ``noise`` estimated from another record of the same joint is to be taken."""
+        return quieter_elsewhere(noise, self.noise_factor, self.layout.noise[0])
 
     def cut(self, ties: np.ndarray) -> None:
         """Tie only those windows from now on that have a one in ``ties`` (W,); ``self.ties`` keeps what was tied before."""

@@ -10,7 +10,8 @@ from ..errors import BadInput
 from ..parameters import channel_unit
 from ..records import Record, oriented
 from ..system import System
-from .fit import SCORE_WINDOW, predict_record
+from .fit import predict_record
+from .left_over import quieter
 from .score import Score
 from .windows import observed_noise
 
@@ -47,7 +48,7 @@ class Comparison:
         return "\n".join([self.record.summary(), f"  noise of {name} {self.noise:.3g} {unit}", self.sentence()])
 
 
-def compare(system: System, record: Record, *, window: float = SCORE_WINDOW, translational: bool = False) -> Comparison:
+def compare(system: System, record: Record, *, window: float | None = None, translational: bool = False) -> Comparison:
     """Predict a record window by window with a model's parameters as they are.
 
     Raises
@@ -66,4 +67,9 @@ def compare(system: System, record: Record, *, window: float = SCORE_WINDOW, tra
             )
     record = oriented(record)
     noise = observed_noise(record)
-    return Comparison(system, record, predict_record(system, record, window=window), noise, translational)
+    seen = predict_record(system, record, window=window)
+    factor = quieter([noise], [seen], [record])[0]
+    if factor != 1.0:  # what a model predicts was no noise
+        noise *= factor
+        seen = predict_record(system, record, window=window, known=(factor, noise))
+    return Comparison(system, record, seen, noise, translational)

@@ -9,9 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from ..parameters import channel_unit
+from ..signals import count_of
 
 if TYPE_CHECKING:
     from .fit import Fit
@@ -21,24 +20,6 @@ FEW = 10.0
 errors; with a hundred, none but by chance)."""
 SCATTERED = 0.4
 """Noise, as a share of a count, that scatters what counting does: counting alone makes 0.29 of it."""
-SELDOM = 4
-"""Samples to each value that is there at least, or a column is not taken to be counted."""
-ROUNDING = 0.02
-"""What a reading may be off a whole number of counts by, as a share of a count: rows are written with a few digits."""
-
-
-def count_of(values: np.ndarray) -> float | None:
-    """The count of an encoder that made these readings (N,), in their unit; None where they are no whole numbers of any."""
-    readings = np.unique(values)
-    readings = readings[np.append(True, np.diff(readings) > 1e-9 * np.ptp(readings))]
-    if readings.size < 2 or SELDOM * readings.size > values.size:
-        return None
-    steps = np.diff(readings)
-    count = float(np.min(steps))
-    # The smallest step by itself may be off by the rounding of what was written down.
-    count = float(np.ptp(readings) / np.round(np.ptp(readings) / count))
-    off = np.abs(steps / count - np.round(steps / count))
-    return count if np.max(off) < ROUNDING else None
 
 
 def few_counts(fit: Fit) -> str:

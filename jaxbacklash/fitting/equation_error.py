@@ -19,7 +19,7 @@ from scipy import optimize
 from ..mechanics import AbstractEffect, Instant
 from ..pointwise import exerted
 from ..records import Record
-from ..signals import Bump, choose_intervals, fit_spline
+from ..signals import Bump, choose_intervals, fit_spline, span
 from .force import force_edges
 
 
@@ -177,7 +177,7 @@ class _WeakForm:
 
     def _smooth_speeds(self) -> tuple[np.ndarray, np.ndarray]:
         if self._speeds is None:
-            t, window = self._record.t, 0.1
+            t, window = self._record.t, span(self._record.dt)
             spline = [
                 fit_spline(t, v, t[0], window / choose_intervals(t, v, window)) if np.any(v) else None
                 for v in (self._y, self._x)

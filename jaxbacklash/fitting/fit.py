@@ -18,19 +18,18 @@ from ..system import System
 from .equation_error import Start
 from .estimates import Estimate, judge
 from .force import tell_way
+from .held import held as is_held
+from .left_over import quieter_elsewhere, settle_noise, why_open
+from .lengths import PANELS, longest_panel, score_window, shooting_window
 from .profile import with_profiles
 from .score import Score, score
 from .search import search, silent
 from .setup import base_system, first_guess, free_names, make_problem
 from .shooting import Problem, Unknowns
-from .windows import LONGEST_PANEL, Layout, Windows, crossing_time, cut
+from .windows import Layout, Windows, crossing_time, cut
 
 ABSOLUTE = ("force", "transmitted")
 """Kinds of record with a measured force, which need no inertia to tell a stiffness."""
-SHOOTING_WINDOW = 0.1
-"""Length of a shooting window [s]. Windows of 0.1 s converge from wild starts; 0.25 s and longer mostly do not."""
-SCORE_WINDOW = 0.2
-"""Length of the windows whose prediction error is quoted [s]."""
 
 @dataclass(frozen=True)
 class Fit:
@@ -39,7 +38,8 @@ class Fit:
     Attributes: ``system`` with the fitted values; ``parameters`` the free ones, by name; ``scores`` one per record;
     ``heldout`` the score of a held-out record; ``noise`` and ``input_noise`` per record; ``covariance`` (q, q) in the order of
     ``free``; ``agreeing``, ``tried`` starts that reached the best minimum; ``tied`` True when the windows were tied;
-    ``cost`` half the sum of squares; ``start`` the equation-error estimate it began from; ``seconds`` by stage.
+    ``cost`` half the sum of squares; ``start`` the equation-error estimate it began from; ``seconds`` by stage;
+    ``noise_open`` per record, by channel, why its noise is an upper bound; without the channels whose noise is known.
     """
 
     system: System
@@ -63,6 +63,7 @@ class Fit:
     seconds: dict[str, float] = field(default_factory=dict)
     problem: Problem | None = field(default=None, repr=False)
     unknowns: Unknowns | None = field(default=None, repr=False)
+    noise_open: tuple[dict[str, str], ...] = ()
 
     @property
     def score(self) -> Score:
@@ -89,7 +90,7 @@ def fit(
     system: System | None = None,
     free: Sequence[str] | None = None,
     heldout: Record | None = None,
-    window: float = SCORE_WINDOW,
+    window: float | None = None,
     starts: int = 4,
     seed: int = 0,
     translational: bool = False,
@@ -107,7 +108,7 @@ def fit(
     system : a system to start from instead of an estimate from the data
     free : names of the free parameters; default all but the inertia and numerical settings
     heldout : a record to predict with the fitted parameters frozen
-    window : length of the windows whose error is quoted [s]
+    window : length of the windows whose error is quoted [s]; default 0.2 s, or 32 samples where that is longer
     starts : how many starting points are tried (the first is the equation-error estimate)
     seed : seed of the further starting points
     translational : units of a translating mass
@@ -135,6 +136,7 @@ def fit(
         names, model = free_names(system), "given"
     names = tuple(free) if free is not None else names
     windows, layout, group = prepare(system, chosen, window)
+    first_noise = layout.noise[0]
     clock["cut"] = time.perf_counter()
 
     found = search(system, windows, names, starts=starts, seed=seed, rough=start is None, progress=progress)
@@ -144,7 +146,15 @@ def fit(
     fitted = with_values(system, dict(zip(values(system), np.asarray(problem.parameters(unknowns.theta)))))
 
     scored, _ = score(problem, unknowns, layout, group=group)
-    held = predict_record(fitted, heldout, window=window, free=names) if heldout is not None else None
+    if not is_held(system):
+        settled = settle_noise(found, layout, scored, chosen, group)
+        if settled.found is not found:
+            found, layout, scored = settled.found, settled.layout, settled.scored
+            problem, unknowns = found.problem, found.unknowns
+            fitted = with_values(system, dict(zip(values(system), np.asarray(problem.parameters(unknowns.theta)))))
+    unknown_noise = tuple(why_open(*own) for own in zip(chosen, layout.noise, scored))
+    known = (layout.noise[0] / first_noise, layout.noise[0])
+    held = predict_record(fitted, heldout, window=window, free=names, known=known) if heldout is not None else None
     clock["score"] = time.perf_counter()
 
     excess = max(1.0, scored[0].rms**2) if not found.tied else 1.0
@@ -159,20 +169,23 @@ def fit(
         fitted, names, estimates, scored, held, chosen, layout.noise, layout.input_noise, covariance,
         found.agreeing, found.tried, found.tied, found.cost, found.steps, start, model, per_inertia, translational,
         {name: at - before for (_, before), (name, at) in pairwise(marks)}, problem, unknowns,
+        unknown_noise,
     )  # fmt: skip
 
 
 def prepare(
-    system: System, records: Sequence[Record], window: float, *, intervals: int = 0
+    system: System, records: Sequence[Record], window: float | None, *, intervals: int = 0
 ) -> tuple[Windows, Layout, int]:
     """Shooting windows for a system like this one, and how many of them make a score window of the wished length.
 
     ``intervals`` asks for at least so many spline intervals a window, so that two records may share a compiled program.
     """
-    shooting = 0.5 * window if window < 2 * SHOOTING_WINDOW else SHOOTING_WINDOW
+    dt = records[0].dt
+    window = score_window(dt, window)
+    shooting = shooting_window(dt, window)
     # Without the noise of a base motion a record says ten times more: its panels have to be finer.
     finer = 1.0 if records[0].kind == "base_motion" else 2.0
-    longest = LONGEST_PANEL / finer
+    longest = longest_panel(dt) / finer
     if system.contact is not None:
         # Thirty-two panels a period of the contact resonance keep the integration error a thousandth of an encoder's noise.
         omega = np.sqrt(float(system.contact.stiffness) / float(system.inertia))
@@ -180,7 +193,7 @@ def prepare(
         # A first guess of the play may be far too small, so that there is an end to what it may ask for.
         play = float(getattr(system.contact, "backlash", 0.0))  # a plain spring has none
         crossing = min(crossing_time(r, play, period / 16.0) for r in records)
-        longest = min(longest, max(min(period / (32.0 * finer), max(crossing, period / 256.0)), records[0].dt / 16.0))
+        longest = min(longest, max(min(period / (32.0 * finer), max(crossing, period / 256.0)), dt / PANELS))
     windows, layout = cut(records, shooting, longest_panel=longest, least=intervals)
     if system.observed == "T" and system.contact is not None:
         # Ties are of motion: the noise of a force counts as the motion that would make it in contact.
@@ -189,14 +202,19 @@ def prepare(
 
 
 def predict_record(
-    system: System, record: Record, *, window: float = SCORE_WINDOW, free: Sequence[str] | None = None
-) -> Score:
+    system: System, record: Record, *, window: float | None = None, free: Sequence[str] | None = None,
+    known: tuple[float, float] = (1.0, 0.0),
+) -> Score:  # fmt: skip
     """Score a system with frozen parameters on a record it may never have seen, window starts re-estimated.
 
     ``free`` only sets how many directions the problem carries, so that the program compiled for a fit serves again.
+    ``known`` is what a fit to another record of the joint has told of the noise: by which factor it was below what the samples
+    alone said, and its standard deviation.
     """
     require_double_precision("predict_record")
     record = oriented(record)
     windows, layout, group = prepare(system, [record], window)
+    if (factor := quieter_elsewhere(layout.noise[0], *known)) != 1.0:
+        windows = windows.noisier(factor)
     problem = make_problem(system, windows, free_names(system) if free is None else free)
     return score(problem, first_guess(problem), layout, group=group)[0][0]

@@ -9,10 +9,8 @@ from functools import lru_cache
 import numpy as np
 
 from ..records import Record
-from ..signals import edges_between, is_smooth, way_between
+from ..signals import edges_between, is_smooth, span, way_between
 
-SMOOTH_OVER = 0.1
-"""Length over which a force is smooth or not [s]."""
 SAID = {"held": "held from each sample to the next", "curved": "a smooth curve through its samples"}
 
 
@@ -30,7 +28,7 @@ def way(record: Record) -> str:
 @lru_cache(maxsize=8)
 def _way(dt: float, force: bytes, motion: bytes) -> str:
     push = np.frombuffer(force)
-    smooth = is_smooth(dt * np.arange(push.size), push, SMOOTH_OVER)
+    smooth = is_smooth(dt * np.arange(push.size), push, span(dt))
     return "straight" if smooth else way_between(push, np.frombuffer(motion))
 
 

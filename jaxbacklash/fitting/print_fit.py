@@ -8,10 +8,12 @@ import numpy as np
 
 from ..parameters import channel_unit
 from .counts import few_counts
+from .lengths import SCORE_WINDOW
 
 if TYPE_CHECKING:
     from .estimates import Estimate
     from .fit import Fit
+    from .score import Score
 
 
 def number(value: float, stderr: float | None) -> str:
@@ -43,15 +45,16 @@ def line(estimate: Estimate) -> str:
 def text(fit: Fit) -> str:
     """The whole report."""
     lines = []
-    for record, score, noise, moved in zip(fit.records, fit.scores, fit.noise, fit.input_noise):
+    for number_of, (record, score, noise, moved) in enumerate(zip(fit.records, fit.scores, fit.noise, fit.input_noise)):
         lines.append(record.summary())
         driver = record.input_name or "x"
         unit = channel_unit(driver, translational=fit.translational)
-        own = channel_unit(record.observed_name, translational=fit.translational)
-        beside = f", of {driver} {moved:.3g} {unit}" if moved else ""
-        lines.append(f"  noise of {record.observed_name} {noise:.3g} {own}{beside}")
+        name = record.observed_name
+        own = channel_unit(name, translational=fit.translational)
+        beside = f", of {driver} {at_most(fit, driver, number_of)}{moved:.3g} {unit}" if moved else ""
+        lines.append(f"  noise of {name} {at_most(fit, name, number_of)}{noise:.3g} {own}{beside}")
         lines.append(
-            f"  prediction error over windows: {score.rms:.3g} times the noise (median window {score.median:.3g})"
+            f"  prediction error over windows{_length(score)}: {score.rms:.3g} times the noise (median window {score.median:.3g})"
         )
     if fit.heldout is not None:
         lines.append(f"  on the held-out record: {fit.heldout.rms:.3g} times the noise (median {fit.heldout.median:.3g})")
@@ -65,6 +68,17 @@ def text(fit: Fit) -> str:
     lines.append(f"{fit.agreeing} of {fit.tried} starts reached this minimum; windows {how}; {fit.steps} steps")
     lines.append(verdict_text(fit))
     return "\n".join(lines)
+
+
+def at_most(fit: Fit, channel: str, record: int = 0) -> str:
+    """The words before the noise of a channel that is an upper bound, with the reason; nothing where it is known."""
+    why = fit.noise_open[record].get(channel, "") if fit.noise_open else ""
+    return f"open ({why}): at most " if why else ""
+
+
+def _length(score: Score) -> str:
+    """How long the windows are, where they are not as long as usual."""
+    return "" if abs(score.length - SCORE_WINDOW) < 0.05 * SCORE_WINDOW else f" of {score.length:.3g} s"
 
 
 def _correlations(fit: Fit) -> list[str]:

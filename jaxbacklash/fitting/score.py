@@ -15,6 +15,7 @@ import numpy as np
 from ..compiled import kept_jit
 from .handed_on import follows, handed_on
 from .led_on import led_on
+from .lengths import SCORE_WINDOW
 from .levenberg import Levenberg, Minimum, minimise
 from .shooting import Problem, Unknowns, residuals
 from .windows import Layout
@@ -35,7 +36,7 @@ class Score(eqx.Module):
 
     Attributes: ``rms`` over all windows; ``median`` window; ``window_rms`` (K,) per score window, NaN where too short;
     ``window_times`` (K,) their start times [s]; ``t`` (N,), ``measured`` and ``predicted`` (N,) the observed channel,
-    ``residual`` (N,) their difference over the noise.
+    ``residual`` (N,) their difference over the noise; ``length`` [s] of a score window.
     """
 
     rms: float
@@ -46,6 +47,7 @@ class Score(eqx.Module):
     measured: np.ndarray
     predicted: np.ndarray
     residual: np.ndarray
+    length: float = SCORE_WINDOW
 
 
 def frozen(problem: Problem, theta: Any) -> Problem:
@@ -140,6 +142,7 @@ def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout
         measured=flat(w.measured),
         predicted=flat(predicted.motion),
         residual=-flat(motion),
+        length=layout.dt * layout.length * group,
     )
 
 

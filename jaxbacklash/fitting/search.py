@@ -3,7 +3,7 @@ r"""The search for a minimum: cheaply on a stretch of the record, then on all of
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import equinox as eqx
 import numpy as np
@@ -53,6 +53,16 @@ class Found:
     tied: bool
     steps: int
 
+    def again(self, problem: Problem) -> Found:
+        """The search gone on with from where it ended, for the same problem with other weights."""
+        how = Levenberg(atol=CLOSE, damping=1e-9) if self.tied else Levenberg()
+        best = minimise(problem, self.unknowns, how)
+        steps = self.steps + int(best.stats["steps"])
+        return replace(
+            self, problem=problem, unknowns=best.value, covariance=_covariance(problem, best), cost=float(best.stats["cost"]),
+            steps=steps,
+        )  # fmt: skip
+
 
 def search(
     system: System,
@@ -87,9 +97,12 @@ def search(
     if not tied:
         best = minimise(problem, best.value, Levenberg())
         cost, steps = float(best.stats["cost"]), steps + int(best.stats["steps"])
+    return Found(problem, best.value, _covariance(problem, best), cost, agreeing, tried, tied, steps)
+
+
+def _covariance(problem: Problem, best: Minimum) -> np.ndarray:
     scale = np.sum(np.asarray(problem.directions), axis=0)
-    covariance = inverse_information(np.asarray(best.stats["schur"])) * np.outer(scale, scale)
-    return Found(problem, best.value, covariance, cost, agreeing, tried, tied, steps)
+    return np.asarray(inverse_information(np.asarray(best.stats["schur"])) * np.outer(scale, scale))
 
 
 def _from_starts(

@@ -22,14 +22,15 @@ from ..sharing import sharing
 from ..signals import DEGREE, NEGLIGIBLE, choose_intervals, fit_spline, is_smooth, knots, noise_level, noise_of_differences
 from .chunks import CHUNK
 from .force import force_edges
+from .lengths import LONGEST_PANEL, SHOOTING_WINDOW
 
 Array = Any
 LEAST_INTERVALS = 8
 """Spline intervals that a window has room for at least; those that its input does not need are joined."""
-LONGEST_PANEL = 2.0e-3
-"""Longest integration panel [s]; a panel is two Runge-Kutta steps."""
 HELD = 30.0
 """How many times more firmly than by the samples a spline is held to have no corner at a knot that its input does not need."""
+SPEED = 0.2
+"""Share of a window over which a jump of the speed where windows join makes the jump of place that counts as much."""
 LEAST_ROOM = 512
 """Windows that the smallest compiled program has room for."""
 
@@ -156,7 +157,7 @@ def cut(
         stacked[key] = np.pad(joined, [(0, total - joined.shape[0])] + [(0, 0)] * (joined.ndim - 1))
     counts = [p["measured"].shape[0] for p in parts]
     noise = tuple(float(p["noise"]) for p in parts)
-    drop = 50.0 / np.mean(noise) * np.array([1.0, 0.02])
+    drop = 50.0 / np.mean(noise) * np.array([1.0, SPEED * max(length * dt, SHOOTING_WINDOW)])
     starts = np.ascontiguousarray(stacked.pop("starts").T)
     panel = dt / every
     windows = Windows(

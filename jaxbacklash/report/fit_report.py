@@ -12,7 +12,7 @@ from ..fitting.loop import NOTHING, read_plateau, sliding_level
 from ..parameters import channel_unit, unit_text
 from ..pointwise import along
 from ..records import Record
-from ..signals import choose_intervals, fit_spline
+from ..signals import choose_intervals, fit_spline, span
 from ..system import System
 from .figures import error_by_stage, force_loop, measured_against_model, phase_plane, residual_in_time, restoring_force, to_svg
 from .html import Panel, write_report
@@ -131,7 +131,7 @@ class Motion:
     """A record's motion with speeds and acceleration from smoothing splines; ``z``, ``dz``, ... have shape (N,)."""
 
     def __init__(self, record: Record, observed: str) -> None:
-        t, window = record.t, 0.1
+        t, window = record.t, span(record.dt)
         zero = np.zeros(record.samples)
         measured = record.channels[observed]
         self.x, self.dx = zero, zero

@@ -120,6 +120,8 @@ def as_json(
     }
     if fit.input_noise[0] > 0.0:
         result["noise"][record.input_name or "x"] = finite(fit.input_noise[0])
+    if fit.noise_open and fit.noise_open[0]:
+        result["noise_open"] = dict(fit.noise_open[0])
     if len(fit.records) > 1:
         result["records"] = [
             about_record(r) | {"noise": finite(n), "rms_over_noise": finite(s.rms), "median_over_noise": finite(s.median)}

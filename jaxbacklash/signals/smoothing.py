@@ -15,6 +15,9 @@ from scipy.interpolate import BSpline
 from scipy.linalg import cho_solve_banded, cholesky_banded
 
 DEGREE = 5
+SPAN, SPAN_SAMPLES = 0.1, 16
+"""Length over which knots are counted [s], and the fewest samples in it: of five, as in 0.1 s at 50 Hz, a quintic spline with a
+knot a sample leaves none free, and follows the noise."""
 NEGLIGIBLE = 1e-6
 """Share of a signal's size below which a misfit of the spline does not count."""
 FOLLOWED = 0.5
@@ -45,6 +48,11 @@ class SmoothMotion:
         spread[::parts] = self.coefficients
         # A spline of the coarse knots is a sum of fine ones (two-scale relation), the first of which begins where it does.
         return np.convolve(spread, mask / parts**DEGREE)[DEGREE * (parts - 1) :]
+
+
+def span(dt: float) -> float:
+    """Length over which knots are counted [s] in a signal with sample spacing ``dt`` [s]: `SPAN`, or `SPAN_SAMPLES` samples."""
+    return max(SPAN, SPAN_SAMPLES * dt)
 
 
 def knots(t0: float, spacing: float, count: int) -> np.ndarray:
@@ -109,7 +117,7 @@ def choose_intervals(t: np.ndarray, values: np.ndarray, window: float, *, longes
         first = (t.size - longest) // 2
         t, values = t[first : first + longest], values[first : first + longest]
     dt = (t[-1] - t[0]) / (t.size - 1)
-    most = max(DEGREE, int(window / (2.0 * dt)))
+    most = max(1, int(window / (2.0 * dt) + 1e-9))
     candidates = sorted({min(most, round(1.26**k)) for k in range(32)})
     best, lowest, bottom, rising, followed = candidates[0], np.inf, np.inf, 0, False
     # A signal without noise would ask for ever more knots; a millionth of its size is as good as exact.
