@@ -32,6 +32,9 @@ GROWS = (1.5, 8.0)
 SAMPLES = 32768
 """Samples that are enough to see slow motion; from a longer record its first ones."""
 
+FAST = 512
+"""Samples are taken in whole numbers of so many: a Fourier transform over a length with large prime factors is ten times slower."""
+
 
 def relations(channels: Mapping[str, np.ndarray], extras: Mapping[str, np.ndarray]) -> list[Finding]:
     """Contradictions between x, y and z, and a y or z that follows x as no joint lets it."""
@@ -122,7 +125,9 @@ def slow_gain(x: np.ndarray, y: np.ndarray) -> float | None:
 
 def _gains(x: np.ndarray, y: np.ndarray) -> list[tuple[int, float, complex]]:
     """First line, coherence and gain from x to y of every octave that holds a hundredth of x's power."""
-    x, y = (values[:SAMPLES] - np.mean(values[:SAMPLES]) for values in (x, y))
+    size = min(x.size, SAMPLES)
+    size -= size % FAST if size > 4 * FAST else 0
+    x, y = (values[:size] - np.mean(values[:size]) for values in (x, y))
     window = np.hanning(x.size)
     fx, fy = np.fft.rfft(window * x), np.fft.rfft(window * y)
     power, other = np.abs(fx) ** 2, np.abs(fy) ** 2
