@@ -33,7 +33,7 @@ WAYS_OUT: dict[str, tuple[str, str]] = {
 WAYS_OUT |= {suffix: WAYS_OUT[".pkl"] for suffix in (".pickle", ".joblib")} | {".arrow": WAYS_OUT[".feather"]}
 
 
-def refuse(path: Path, suffix: str) -> Table:
+def refuse(suffix: str, path: Path, decimal: str | None = None) -> Table:
     """Raise the sentence for a file of a kind in `WAYS_OUT`."""
     found, wanted = WAYS_OUT[suffix]
     name = shlex.quote(str(path))

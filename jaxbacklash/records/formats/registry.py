@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import importlib
 import re
 import zipfile
@@ -11,7 +12,7 @@ from pathlib import Path
 from ..checks import listed, wrong
 from ..table import Table
 
-Reader = Callable[[Path], Table]
+Reader = Callable[..., Table]
 
 READERS: dict[str, str] = {
     **dict.fromkeys((".npz",), "npz"),
@@ -28,6 +29,9 @@ READERS: dict[str, str] = {
     **dict.fromkeys((".wav",), "wav"),
 }
 """Modules of this package by suffix; each has `read(path) -> Table`."""
+
+WITH_DECIMAL = frozenset(("xlsx",))
+"""Modules whose `read` takes the decimal mark of numbers written as text."""
 
 SIGNATURES: tuple[tuple[bytes, str], ...] = (
     (b"\x93NUMPY", ".npy"),
@@ -71,7 +75,8 @@ def reader_for(path: Path) -> Reader | None:
     Returns
     -------
     callable or None
-        Takes the path, returns a `Table`, raises `BadInput`; None for a text table (and whatever is to be tried as one).
+        Takes the path and perhaps the decimal mark that the user said (`decimal`), returns a `Table`, raises `BadInput`; None
+        for a text table (and whatever is to be tried as one).
 
     Raises
     ------
@@ -83,10 +88,10 @@ def reader_for(path: Path) -> Reader | None:
         suffix = _by_content(path) or suffix
     module = READERS.get(suffix)
     if module is not None:
-        return lambda path: _with_columns(importlib.import_module(f".{module}", __package__).read(path), path)
+        return functools.partial(_read, module)
     from .refused import WAYS_OUT, refuse
 
-    return (lambda path: refuse(path, suffix)) if suffix in WAYS_OUT else None
+    return functools.partial(refuse, suffix) if suffix in WAYS_OUT else None
 
 
 def _by_content(path: Path) -> str:
@@ -116,8 +121,10 @@ def _by_members(path: Path) -> str:
     return ".npz" if any(name.endswith(".npy") for name in names) else ".zip"
 
 
-def _with_columns(table: Table, path: Path) -> Table:
-    """The table, or a sentence about what is in a file that holds none."""
+def _read(module: str, path: Path, decimal: str | None = None) -> Table:
+    """The table of a file, or a sentence about what is in one that holds none."""
+    reader = importlib.import_module(f".{module}", __package__).read
+    table = reader(path, decimal) if module in WITH_DECIMAL else reader(path)
     if table.columns:
         return table
     found = listed((f"{name} ({what})" for name, what in table.left_out.items()), limit=4)

@@ -14,7 +14,7 @@ from typing import Any, TextIO
 
 from jaxbacklash.errors import BadInput
 
-from ..checks import listed, wrong
+from ..checks import MIN_SAMPLES, listed, wrong
 from ..table import Column, Table
 from ..text import read_text
 from .arrays import tidy, with_bare_names
@@ -22,17 +22,21 @@ from .guard import guarded, library
 
 MAX_UNPACKED = 1 << 30
 """Bytes of the sheets once unpacked; a million rows of ten columns have half of that."""
+MAX_CELLS = 40_000_000
+"""Cells looked at, empty ones too: more than a full sheet of thirty columns. One cell far to the right makes a row wide."""
 ERRORS = ("#N/A", "#DIV/0!", "#VALUE!", "#REF!", "#NAME?", "#NUM!", "#NULL!")
 DAMAGED = "a file that is damaged or no Excel workbook"
 WANTED = "a workbook saved as .xlsx, or the sheet as .csv"
 
 
-def read(path: Path) -> Table:
+def read(path: Path, decimal: str | None = None) -> Table:
     """The columns of a workbook.
 
     Parameters
     ----------
     path : Path
+    decimal : str or None
+        "." or ",": what it means where a number written as text can be read in two ways.
 
     Returns
     -------
@@ -53,7 +57,7 @@ def read(path: Path) -> Table:
         with _open(openpyxl, path, results=True) as book:
             for sheet in book.worksheets:
                 try:
-                    table = _sheet(sheet, path)
+                    table = _sheet(sheet, path, decimal)
                 except BadInput as bad:
                     why[sheet.title] = bad
                     continue
@@ -68,6 +72,9 @@ def read(path: Path) -> Table:
             if any(_has_gaps(column) for column in table.columns):
                 _refuse_formulas(openpyxl, path, title)
     left_out = {tidy(title): f"a sheet without a table ({bad})" for title, bad in why.items()}
+    most = max(table.rows for table in tables.values())
+    for title in [title for title, table in tables.items() if table.rows < MIN_SAMPLES <= most]:
+        left_out[tidy(title)] = f"a sheet with no more than {tables.pop(title).rows} rows"
     return dataclasses.replace(_joined(tables), left_out=left_out)
 
 
@@ -89,25 +96,28 @@ def _bound_unpacked(path: Path) -> None:
         raise wrong(str(path), f"{size / 1e9:.4g} GB of sheets once unpacked", f"at most {MAX_UNPACKED / 1e9:.2g} GB")
 
 
-def _sheet(sheet: Any, path: Path) -> Table | None:
+def _sheet(sheet: Any, path: Path, decimal: str | None) -> Table | None:
     """One sheet's table; None where it is empty. Line numbers are those of the sheet's rows."""
     sheet.reset_dimensions()  # what a program wrote there need not be true
     where = f"{path} sheet {tidy(sheet.title)}"
     with tempfile.TemporaryDirectory() as folder:
         lines = Path(folder) / "sheet.tsv"
         with open(lines, "w", encoding="utf-8", newline="") as file:
-            if not _write(sheet, file):
+            if not _write(sheet, file, where):
                 return None
         try:
-            return read_text(lines, decimal=None)
+            return read_text(lines, decimal=decimal)
         except BadInput as bad:
             raise BadInput(str(bad).replace(f"{lines} line", f"{where}, row").replace(str(lines), where)) from bad
 
 
-def _write(sheet: Any, file: TextIO) -> bool:
+def _write(sheet: Any, file: TextIO, where: str) -> bool:
     """Write a sheet as lines of cells with tabs between them; whether there was any cell."""
-    width, empty, any_cell = 0, 0, False
+    width, empty, seen, any_cell = 0, 0, 0, False
     for row in sheet.iter_rows(values_only=True):
+        seen += max(len(row), width)
+        if seen > MAX_CELLS:
+            raise wrong(where, f"more than {MAX_CELLS} cells", "a record with fewer columns, or the sheet as .csv")
         cells = [_text(cell) for cell in row]
         while cells and not cells[-1]:
             cells.pop()
@@ -130,7 +140,7 @@ def _text(cell: Any) -> str:
     if isinstance(cell, float | int):
         return repr(cell)
     if isinstance(cell, datetime.datetime):
-        return cell.isoformat(sep=" ", timespec="microseconds")
+        return cell.isoformat(timespec="microseconds")
     if isinstance(cell, datetime.timedelta):
         return repr(cell.total_seconds())
     if isinstance(cell, datetime.time | datetime.date):
