@@ -17,7 +17,7 @@ def course(samples: int = 400) -> dict[str, np.ndarray]:
 def write_tdms(path: Path, table: dict[str, np.ndarray]) -> None:
     from nptdms import ChannelObject, TdmsWriter
 
-    wave = {"wf_increment": 1 / RATE, "wf_start_offset": 0.0, "wf_start_time": np.datetime64("2024-05-01T10:00:00")}
+    wave = {"wf_increment": float(table["t"][1]), "wf_start_offset": 0.0, "wf_start_time": np.datetime64("2024-05-01T10:00:00")}
     with TdmsWriter(path) as file:
         file.write_segment([ChannelObject("Log", name, table[name], wave | {"unit_string": "deg"}) for name in ("x", "z")])
 
@@ -120,7 +120,7 @@ def write_mcap_json(path: Path, table: dict[str, np.ndarray]) -> None:
 def write_wav(path: Path, table: dict[str, np.ndarray]) -> None:
     from scipy.io import wavfile
 
-    wavfile.write(path, int(RATE), np.column_stack([table["x"], table["z"]]))
+    wavfile.write(path, round(1 / table["t"][1]), np.column_stack([table["x"], table["z"]]))
 
 
 WRITERS = {

@@ -110,7 +110,7 @@ def test_hostile_workbooks(tmp_path):
     place = data.rfind(b"PK\x01\x02")
     data[place + 24 : place + 28] = struct.pack("<I", 2**31)
     (tmp_path / "good.xlsx").write_bytes(data)
-    refused(tmp_path / "good.xlsx", "2.147 GB", "once unpacked")
+    refused(tmp_path / "good.xlsx", "2.148 GB", "once unpacked")
 
 
 JSON_FORMS = {

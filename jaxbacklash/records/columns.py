@@ -84,6 +84,7 @@ def column_number(table: Table, spec: str, where: str) -> int:
             raise wrong(where, f"no column {spec}, which --columns names", f"one of #1 to #{len(names)} ({listed(names)})")
         return number - 1
     ends = [number for number, name in enumerate(names) if spec in (split_unit(name)[0], name.rpartition("/")[2])]
+    ends = [number for number, column in enumerate(table.columns) if spec in column.aliases] or ends
     if len(ends) == 1:
         return ends[0]
     if spec in table.left_out:

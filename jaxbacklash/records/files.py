@@ -19,7 +19,7 @@ def read_table(path: Path, options: ReadOptions | None = None) -> Table:
     ----------
     path : Path
     options : ReadOptions, optional
-        `skip` and `decimal` concern text tables only.
+        `skip` concerns text tables only, `decimal` sheets of a workbook too.
 
     Raises
     ------
@@ -40,7 +40,7 @@ def read_table(path: Path, options: ReadOptions | None = None) -> Table:
         reader = reader_for(path)
         if reader is None:
             return read_text(path, skip=options.skip, decimal=options.decimal)
-        return reader(path)
+        return reader(path, decimal=options.decimal)
     except OSError as why:
         raise wrong(where, f"a file that cannot be read ({why.strerror or why})", "one that can") from why
     except MemoryError as why:
