@@ -3,6 +3,7 @@
 import gzip
 import re
 import shlex
+import subprocess
 import zlib
 from pathlib import Path
 
@@ -260,6 +261,33 @@ def test_what_stands_above_a_table(tmp_path, above, separator, names, rate):
     assert table.place(3) == f"row 4 (line {above.count(chr(10)) + 4})"
 
 
+@pytest.mark.parametrize(
+    ("above", "separator", "names", "units"),
+    [
+        ("Time,Channel A,Channel B\n(ms),(mV),(mV)\n\n", ",", ("Time", "Channel A", "Channel B"), ("ms", "mV", "mV")),
+        ("in s,C1 in V,C2 in V\n", ",", ("in s", "C1 in V", "C2 in V"), ("s", "V", "V")),
+        ("x-axis,1,2\nsecond,Volt,Volt\n", ",", ("x-axis", "1", "2"), ("second", "Volt", "Volt")),
+        ("Model,SDS1104,,\nSource,CH1,CH2\nSecond,Volt,Volt\n", ",", ("Source", "CH1", "CH2"), ("Second", "Volt", "Volt")),
+        ("Time (s) Run #1,Pos (rad) Run #1,z\n", ",", ("Time (s) Run #1", "Pos (rad) Run #1", "z"), ("s", "rad", "")),
+        ('"Time\n[s]","x\n[deg]",z\n', ",", ("Time [s]", "x [deg]", "z"), ("s", "deg", "")),
+        ('Rig 5" arm\nt,x,z\n', ",", ("t", "x", "z"), ("", "", "")),
+        ("% Created by MATLAB\n% time\n% base\n% rel\n", " ", ("time", "base", "rel"), ("", "", "")),
+        ("# Created by Octave 8.4\n# name: data\n# columns: 3\n", " ", ("column 1", "column 2", "column 3"), ("", "", "")),
+        ("| t | x | z |\n|---|---|---|\n", "|", ("t", "x", "z"), ("", "", "")),
+        ("Time (s) Base angle (deg) z (rad)\n", " ", ("Time (s)", "Base angle (deg)", "z (rad)"), ("s", "deg", "rad")),
+        ("".join(f"Key {row}: value {row}\n" for row in range(1500)) + "t,x,z\n", ",", ("t", "x", "z"), ("", "", "")),
+        ("".join(f"# line {row}, 1, 2\n" for row in range(400)) + "t,x,z\n", ",", ("t", "x", "z"), ("", "", "")),
+        ("\n".join(f"ch{row},{row},{2 * row}" for row in range(60)) + "\n\nt,x,z\n", ",", ("t", "x", "z"), ("", "", "")),
+        ("t,x,z,\n", ",", ("t", "x", "z"), ("", "", "")),
+        ("t\tx\tz\n", ",", ("t", "x", "z"), ("", "", "")),
+    ],
+)
+def test_headers_of_many_instruments(tmp_path, above, separator, names, units):
+    table = read(tmp_path, above + text(separator, names=()))
+    assert_good(table, names)
+    assert tuple(column.unit for column in table.columns) == units
+
+
 def test_rigols_increment_stands_behind_the_names(tmp_path):
     lines = ["X,CH1,CH2,Start,Increment,", "Sequence,Volt,Volt,-6.0e-2,2.0e-3,"]
     lines += [f"{row},{x:.9g},{z:.9g},,," for row, (x, z) in enumerate(zip(X, Z, strict=True))]
@@ -455,6 +483,33 @@ def test_infinity_truths_and_words(tmp_path):
 def test_units_that_change_from_cell_to_cell_are_no_numbers(tmp_path):
     rows = [f"{t:.3f},{(f'{1e3 * x:.3f} mrad', f'{x:.6f} rad')[row % 2]}" for row, (t, x) in enumerate(zip(T, X, strict=True))]
     assert read(tmp_path, "\n".join(["t,x", *rows])).columns[1].values.dtype.kind == "U"
+
+
+@pytest.mark.parametrize("rows", [(3, 90), (0, 1, 2)])
+def test_a_word_among_numbers_makes_a_column_of_text_and_costs_no_row(tmp_path, rows):
+    lines = [f"{t:.3f},{'ERR' if row in rows else x}" for row, (t, x) in enumerate(zip(T, X, strict=True))]
+    table = read(tmp_path, "\n".join(["t,x", *lines]) + "\n")
+    assert table.names == ["t", "x"]
+    assert np.flatnonzero(table.columns[1].values == "ERR").tolist() == list(rows)
+
+
+def test_pythons_log_stamps_are_refused_with_the_way_to_mend_them(tmp_path):
+    lines = [f"2025-11-12 10:03:{29 + t:06.3f},{x}".replace(".", ",", 1) for t, x in zip(T, X, strict=True)]
+    with pytest.raises(BadInput) as caught:
+        read(tmp_path, "\n".join(["asctime,x", *lines]) + "\n", "a log.csv")
+    command = re.search(r"sed .*? > mended\.csv", str(caught.value))
+    assert command is not None
+    subprocess.run(["bash", "-c", command[0]], cwd=tmp_path, check=True)
+    np.testing.assert_array_equal(read_text(tmp_path / "mended.csv").columns[1].values, X)
+
+
+@pytest.mark.parametrize("names", [("t [s]", "x", "z"), None])
+def test_a_table_that_lies_on_its_side(tmp_path, names):
+    lines = [",".join([*([names[row]] if names else []), *map(repr, values.tolist())]) for row, values in enumerate((T, X, Z))]
+    table = read(tmp_path, "\n".join(lines) + "\n")
+    assert_good(table, names or ("column 1", "column 2", "column 3"))
+    assert table.columns[0].unit == ("s" if names else "")
+    assert any("each line is taken for a channel" in note for note in table.notes)
 
 
 def test_underscores_are_no_digits(tmp_path):

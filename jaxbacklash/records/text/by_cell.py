@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..checks import listed, wrong
-from .cells import MISSING, NUMBER, STAMP, WORD, kind
+from .cells import NUMBER, STAMP, WORD, kind, unframed
 from .head import COMMENT
 from .layout import Layout
 
@@ -78,6 +78,8 @@ def _cut(lines: list[str], layout: Layout, where: str) -> list[list[str]]:
         if not any('"' in line for line in lines):
             return [line.split() for line in lines]
         lines = [line.replace("\t", " ").strip() for line in lines]
+    elif layout.separator == "|":
+        lines = [unframed(line) for line in lines]
     csv.field_size_limit(2**31 - 1)
     rows = list(csv.reader(lines, delimiter=layout.separator or " ", skipinitialspace=True))
     if len(rows) != len(lines):
@@ -159,6 +161,3 @@ def _refuse_line(where: str, cells: list[str], names: Sequence[str], cut: bool) 
         found = f"{len(cells)} of {len(names)} values and then the end of the file, which looks half-written"
         raise wrong(where, found, "a complete last line (delete it or copy the file again)")
     raise wrong(where, f"{len(cells)} value{'s' * (len(cells) != 1)}", f"{len(names)} ({listed(names)})")
-
-
-__all__ = ["MISSING", "read_cells"]

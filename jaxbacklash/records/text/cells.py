@@ -73,10 +73,17 @@ def split(line: str, separator: str | None) -> list[str]:
         if '"' not in line:
             return line.split()
         line, separator = line.replace("\t", " ").strip(), " "
+    elif separator == "|":
+        line = unframed(line)
     try:
         return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])]
     except csv.Error:
         return [line]
+
+
+def unframed(line: str) -> str:
+    """A line between bars without the bars at its ends."""
+    return line.strip().removeprefix("|").removesuffix("|")
 
 
 def spread(cells: list[str], width: int) -> list[str]:

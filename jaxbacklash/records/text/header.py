@@ -5,19 +5,17 @@ from __future__ import annotations
 import dataclasses
 import re
 
-from ..checks import listed, wrong
+from ..checks import listed
 from ..header_units import is_unit, split_unit
 from .cells import MISSING, NUMBER, STAMP, WORD, kind, number_and_unit, split, spread
-from .head import COMMENT, SEPARATORS, Head, Run
+from .head import SEPARATORS, Head, Run
+from .names import bare_comment, fit_names
 
 MARKER = re.compile(
     r"\W*(?:end[ _]?of[ _]?header|(?:begin[ _]|start[ _]?(?:of[ _])?)?(?:data|values|samples|measurements?)|header|table)\W*",
     re.IGNORECASE,
 )
 """Lines such as "[Data]" that stand between names and values."""
-
-COMMENTS_SEARCHED = 5
-"""How many lines above the values are searched for names that stand in a comment."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -65,13 +63,13 @@ def find_names(head: Head, run: Run, where: str) -> Names:
         used.append(rows[1])
     if len(used) > 1:
         notes.append(f"the row of units {place} the header ({listed(each or '-' for each in units)}) is used")
-    cells = cells[:filled] if rate else _fitted(cells, head, index, run, where)
+    cells = cells[:filled] if rate else fit_names(cells, head, index, run, where)
     width = len(cells)
     following = [each for each in rows if each[0] < min(row for row, _ in used)]
     if len(set(filter(None, cells))) < len([cell for cell in cells if cell]) and following and _groups(following[0][1], width):
         group = _filled(spread(following[0][1], width))
         cells = [f"{above}/{name}" if above else name for above, name in zip(group, cells, strict=True)]
-        notes.append(f"the row above the header names groups, so columns are called {cells[0]} and so on")
+        notes.append(f"the row above the header names groups, so columns are called {next(filter(None, cells))} and so on")
         used.append(following[0])
     names = tuple(name or f"column {place}" for place, name in enumerate(cells, 1))
     stated = tuple(unit or split_unit(name)[1] for unit, name in zip([*units, *[""] * width], names, strict=False))
@@ -85,11 +83,13 @@ def _rows_above(head: Head, run: Run) -> list[tuple[int, list[str]]]:
     rows: list[tuple[int, list[str]]] = []
     for index in reversed(range(run.first)):
         line = head.lines[index]
-        if head.passed(index, run.separator) or MARKER.fullmatch(line.text.strip()):
+        if head.passed(index, run.separator) or MARKER.fullmatch(line.text.strip()) or not line.text.strip("-=+|: \t\r\n"):
             if rows and line.blank:
                 break
             continue
         cells = _row_of_words(line.text, run)
+        if cells is None and len(rows) == 1 and _numbered_names(split(line.text, run.separator), rows[0][1]):
+            cells = split(line.text, run.separator)
         if cells is None:
             break
         rows.append((index, cells))
@@ -98,32 +98,62 @@ def _rows_above(head: Head, run: Run) -> list[tuple[int, list[str]]]:
     return rows
 
 
+def _numbered_names(cells: list[str], units: list[str]) -> bool:
+    """Whether a row above units calls columns by number, as some scopes do: x-axis,1,2 above second,Volt,Volt."""
+    numbered = len(cells) > 1 and cells[1:] == [str(number) for number in range(1, len(cells))]
+    return numbered and len(cells) == len(units) and kind(cells[0]) == WORD and _all_units(units, len(units))
+
+
 def _row_of_words(text: str, run: Run) -> list[str] | None:
     """The cells of a line that may hold names or units; None where it holds numbers."""
     cells = split(text, run.separator)
     words = cells[: len(run.kinds.rstrip(MISSING))]
-    if any(kind(cell) in (NUMBER, STAMP) and not is_unit(cell) for cell in words) or not any(words):
+    if any(kind(cell) in (NUMBER, STAMP) and not is_unit(cell) for cell in words) or not any(words) or text.startswith("@"):
         return None
     return cells
 
 
 def _commented(head: Head, run: Run) -> list[tuple[int, list[str]]]:
-    """Rows of names and units that stand in comments, as numpy.savetxt and MATLAB write them; the nearest first."""
+    """Rows of names and units that stand in comments, as numpy.savetxt and MATLAB write them; the nearest first.
+
+    They are the last comments above the values: others, of as many words by chance, are prose.
+    """
     rows: list[tuple[int, list[str]]] = []
-    for index in reversed(range(max(0, run.first - COMMENTS_SEARCHED), run.first)):
-        text = head.lines[index].text
-        if not (head.lines[index].comment or text.lstrip().startswith(";")):
+    for index in reversed(range(run.first)):
+        if head.lines[index].blank or not bare_comment(head.lines[index].text).strip("-=* \t"):
             continue
-        bare = re.sub(r"^\s*\"?(?:#+|%+|//+|;+|!+)", "", text.rstrip("\r\n"))
-        for separator in (run.separator, *SEPARATORS):
-            cells = split(bare.strip(" ") if separator else bare, separator)
-            fits = len(cells) == run.width or (len(spread(cells, run.width)) == run.width == len(cells) + 1 and not separator)
-            if fits and all(kind(cell) in (WORD, MISSING) for cell in cells) and any(cells):
-                rows.append((index, cells))
-                break
-    # Of several comments of this width only those that touch each other belong together.
-    together = [each for place, each in enumerate(rows) if rows[0][0] - each[0] == place]
-    return together if len(together) < 2 or _all_units(together[0][1], run.width) else together[:1]
+        cells = _commented_cells(head, index, run)
+        if cells is None or len(rows) == 2:
+            break
+        rows.append((index, cells))
+    if rows:
+        # A second row is of units, or above units.
+        filled = len(run.kinds.rstrip(MISSING))
+        return rows if len(rows) == 2 and (_all_units(rows[0][1], filled) or _all_units(rows[1][1], filled)) else rows[:1]
+    return _name_by_name(head, run)
+
+
+def _commented_cells(head: Head, index: int, run: Run) -> list[str] | None:
+    """The cells of a comment that has one word for each column; None where it has not."""
+    text = head.lines[index].text
+    if not head.passed(index, run.separator):
+        return None
+    bare = bare_comment(text)
+    for separator in (run.separator, *SEPARATORS):
+        cells = split(bare.strip(" ") if separator else bare, separator)
+        if len(cells) == run.width and all(kind(cell) in (WORD, MISSING) for cell in cells) and any(cells):
+            return cells
+    return None
+
+
+def _name_by_name(head: Head, run: Run) -> list[tuple[int, list[str]]]:
+    """Names that stand in as many comments right above the values, one in each."""
+    lines = range(run.first - run.width, run.first)
+    if run.width < 2 or lines[0] < 0 or not all(head.lines[index].comment for index in lines):
+        return []
+    names = [bare_comment(head.lines[index].text).strip() for index in lines]
+    single = all(name and kind(name) == WORD and len(name.split()) <= 3 and ":" not in name for name in names)
+    return [(lines[-1], names)] if single else []
 
 
 def _all_units(cells: list[str], width: int) -> bool:
@@ -154,59 +184,6 @@ def _increment(names: list[str], values: list[str], width: int) -> float | None:
                 continue
             return 1.0 / step if step > 0 else None
     return None
-
-
-def _fitted(cells: list[str], head: Head, index: int, run: Run, where: str) -> list[str]:
-    """The names, one for each column of values, or a refusal."""
-    width = run.width
-    # Every line may end with a separator, and then the last column is none.
-    filled = len(run.kinds.rstrip(MISSING))
-    while len(cells) > width and (not cells[-1] or cells[-1].lower() == "comment"):
-        cells = cells[:-1]
-    if len(cells) == width:
-        while width > filled and not cells[-1]:
-            cells, width = cells[:-1], width - 1
-        # "t, x, z" above values between blanks is cut at blanks too, and keeps its commas.
-        if run.separator is None and any(cell.endswith((",", ";")) for cell in cells[:-1]):
-            return [cell.strip(",;") for cell in cells]
-        return cells
-    if filled <= len(cells) < width:
-        return cells
-    text = (
-        re.sub(r"^\s*\"?(?:#+|%+|//+|;+)\s*", "", head.lines[index].text)
-        if COMMENT.match(head.lines[index].text)
-        else head.lines[index].text
-    )
-    for other in _other_ways(text.strip("\r\n")):
-        if filled <= len(other) <= width:
-            return other
-    # R writes a number in front of each row and no name for it.
-    first = [
-        head.cells(row, run.separator)[0]
-        for row in range(run.first, min(run.last, run.first + 3) + 1)
-        if not head.passed(row, run.separator)
-    ]
-    if (
-        len(cells) == width - 1
-        and first == [str(number) for number in range(int(first[0]), int(first[0]) + len(first))]
-        and int(first[0]) < 2
-    ):
-        return ["", *cells]
-    line = head.lines[run.first].number
-    found = f"{width} value{'s' * (width != 1)}"
-    names = f"{len(cells)} ({listed(cells)})"
-    hint = ""
-    if run.separator == "," and width == 2 * len(cells):
-        hint = "; decimal commas in a file separated by commas need quotes, or semicolons as separators"
-    raise wrong(f"{where} line {line}", found, f"{names}, as many as line {head.lines[index].number} has names{hint}")
-
-
-def _other_ways(text: str) -> list[list[str]]:
-    """A header cut otherwise than its values: by another separator, by two blanks or more, with units behind a blank."""
-    ways = [split(text, mark) for mark in SEPARATORS if mark and mark in text]
-    ways.append([cell for cell in re.split(r"\t+|\s{2,}", text.strip()) if cell])
-    ways.append(re.sub(r"\s+([\[(][^\])]*[\])])", "\u00a0\\1", text).split(" "))
-    return [[cell.replace("\u00a0", " ").strip() for cell in way if cell.strip()] for way in ways]
 
 
 def _groups(cells: list[str], width: int) -> bool:

@@ -157,6 +157,7 @@ def _look(source: Source, skip: int) -> tuple[Head, Run | None]:
             ended = len(more) < wanted
             if ended or (
                 run
+                and 2 * sum(kind in NUMBER + STAMP for kind in run.kinds) > run.width
                 and run.last - run.first >= 8
                 and all(head.passed(i, run.separator) for i in range(run.last + 1, len(head.lines)))
             ):
@@ -204,12 +205,11 @@ def _beginning(head: Head, run: Run, where: str) -> int:
         if head.passed(index, run.separator):
             continue
         kinds = head.kinds(index, run.separator).rstrip(MISSING)
-        if not (
-            len(kinds) <= run.width and all(kinds[place : place + 1] in (NUMBER, STAMP) for place in values if kinds[place:])
-        ):
+        whole = len(kinds) > values[-1] and all(kinds[place] in (NUMBER, STAMP) for place in values)
+        # A word may stand where a number is missing, but not for the first value: lines above a table begin with words.
+        begun = kinds[values[0] : values[0] + 1] == run.kinds[values[0]] and len(head.kinds(index, run.separator)) == run.width
+        if len(kinds) > run.width or not (whole or begun):
             words += [index] * (set(kinds) <= {WORD, MISSING} and len(kinds) > 1)
-            continue
-        if len(kinds) <= values[-1]:
             continue
         rows += 1
         if not words:
