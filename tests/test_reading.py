@@ -160,6 +160,9 @@ def test_signs_and_gears_are_mended_where_they_are_said():
 def test_a_stretch_may_be_chosen():
     found, _ = read(named(t=T, x=X, z=Z), start=1.0, stop=2.0)
     assert (found.t[0], found.t[-1]) == (1.0, 2.0)
+    again = np.concatenate([T[:700], T[: N - 700]])
+    found, _ = read(named(t=again, x=X, z=Z), stop=float(T[699]))
+    assert found.samples == 700
     assert "--from and --to" in str(refusal(named(t=T, x=X, z=Z), start=9.0))
 
 

@@ -28,7 +28,7 @@ from .findings import find, find_in_times
 from .findings.mend import after, before
 from .options import ReadOptions
 from .record import Record
-from .resample import resampled
+from .resample import no_long_gap, resampled
 from .table import Table
 from .undriven import undriven
 
@@ -126,6 +126,7 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
     stated = frozenset(options.units) | {name for name, column in picked.channels.items() if column.unit}
     findings = find_in_times(t, options, units_stated=stated)
     _refuse(findings, where)
+    _without_gaps(t, options, where)
     t, channels, extras = before(t, channels, extras, options)
     findings += find(t, channels, extras, options, units_stated=stated, rate_hz=options.rate)
     _refuse(findings, where)
@@ -133,7 +134,6 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
         warnings.warn(finding.sentence(where), UserWarning, stacklevel=3)
     t, channels, extras = after(t, channels, extras, findings)
     if options.resample:
-        time_axis.increasing(t, where)
         t, channels, extras = _even(t, channels, extras, options, where)
     record = Record(t, channels, where, extras, _confirmed(picked, options), tuple(findings))
     undriven(record, table, picked, options)
@@ -187,8 +187,11 @@ def _between(t, channels, extras, options: ReadOptions, where: str):
         return t, channels, extras
     low = -math.inf if options.start is None else options.start
     high = math.inf if options.stop is None else options.stop
-    rows = (t >= low) & (t <= high)
-    if not rows.any():
+    first = int(np.argmax(t >= low)) if np.any(t >= low) else t.size
+    # A second recording behind the first begins with early times again.
+    ends = np.flatnonzero((t[first:] > high) | np.append(False, np.diff(t[first:]) < 0.0) & (options.stop is not None))
+    rows = slice(first, first + int(ends[0]) if ends.size else t.size)
+    if not t[rows].size:
         found = f"no samples from {low:g} s to {high:g} s"
         raise wrong(where, found, f"a part of {t[0]:.6g} s to {t[-1]:.6g} s for --from and --to")
     return t[rows], {n: v[rows] for n, v in channels.items()}, {n: v[rows] for n, v in extras.items()}
@@ -199,6 +202,17 @@ def _refuse(findings: list[Finding], where: str) -> None:
     for finding in findings:
         if finding.action in (REFUSE, ASK):
             raise BadInput(finding.sentence(where), remedy=finding.remedy if finding.remedy.startswith("--") else "")
+
+
+def _without_gaps(t: np.ndarray, options: ReadOptions, where: str) -> None:
+    """Refuse rows that were lost before channels are looked at: what moves on over a gap looks like counts that were lost."""
+    if t.size < 3:
+        return  # too short for any record, which says so itself
+    time_axis.increasing(t, where)
+    if not options.resample:
+        time_axis.uniform(t, where)
+    elif time_axis.uniform_grid(t) is None:
+        no_long_gap(t, where)
 
 
 def _even(t, channels, extras, options: ReadOptions, where: str):

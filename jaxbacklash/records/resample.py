@@ -44,7 +44,7 @@ def resampled(
         raise wrong(where, f"a rate of {number(rate)} Hz to resample to", "a positive number")
     old = time_axis.uniform_grid(t)
     if old is None:
-        _no_long_gap(t, where)
+        no_long_gap(t, where)
         old_rate = 1 / float(np.median(np.diff(t)))
         even = _grid(t, old_rate)
         columns = {name: _interpolated(t, values, even) for name, values in columns.items()}
@@ -61,7 +61,7 @@ def resampled(
     return new, {name: _interpolated(old, values, new) for name, values in columns.items()}
 
 
-def _no_long_gap(t: np.ndarray, where: str) -> None:
+def no_long_gap(t: np.ndarray, where: str) -> None:
     """Refuse gaps that no interpolation bridges honestly."""
     steps = np.diff(t)
     usual = float(np.median(steps))
