@@ -125,12 +125,16 @@ def test_oddities_are_warned_of_and_a_coarse_encoder_is_none(tmp_path):
     clipped = table | {"z": np.clip(table["z"], -0.03, 0.03)}
     rows = np.arange(5000)
     held = {name: values[np.where(rows % 500 > 480, rows // 500 * 500 + 480, rows)] for name, values in table.items()}
-    contrary = table | {"y": table["z"]}
-    with pytest.warns(UserWarning, match="looks clipped"):
-        read_record(write_table(tmp_path / "rec.csv", clipped))
-    for change, text in [(held | {"t": table["t"]}, "repeat the value before"), (contrary, "three axes")]:
-        with pytest.raises(BadInput, match=text):
+    contrary = table | {"y": table["x"] + 0.7 * table["z"]}
+    for change, text in [
+        (clipped, "looks clipped"),
+        (held | {"t": table["t"]}, "look lost"),
+        (contrary, "differs from y - x"),
+    ]:
+        with pytest.warns(UserWarning, match=text):
             read_record(write_table(tmp_path / "rec.csv", change))
+    with pytest.raises(BadInput, match="three axes"):
+        read_record(write_table(tmp_path / "rec.csv", table | {"y": table["z"]}))
     coarse = {name: np.round(values / 2e-3) * 2e-3 for name, values in table.items()}
     with warnings.catch_warnings():
         warnings.simplefilter("error")

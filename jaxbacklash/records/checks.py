@@ -10,13 +10,13 @@ import numpy as np
 
 from jaxbacklash.errors import BadInput
 
+from .findings.quantities import degrees
+
 CHANNELS = ("x", "z", "y", "F", "T")
 """Base motion, relative motion, absolute motion, force on the link, transmitted force (the last two may be torques)."""
 
 MIN_SAMPLES = 64
 MIN_SECONDS = 0.5
-MAX_RELATIVE_RAD = 1.0
-MAX_BASE_RAD = 2 * np.pi
 WANTED_CHANNELS = (
     "x with z or y (base motion), F with y or z (force), x with T (transmitted force), or z or y alone (free decay)"
 )
@@ -146,51 +146,12 @@ def moving(values: np.ndarray, name: str, role: str, where: str, hint: str = "")
 
 
 def plausible_angles(channels: dict[str, np.ndarray], confirmed, where: str) -> None:
-    """Refuse degrees taken for radians.
-
-    The relative motion of a loose joint is its play and the give of its contact. Over 1 rad (57 degrees) to one side
-    of its middle it is no longer a joint with play, while a degree or two read as radians exceeds it. The base may
-    swing widely, but one full turn away from its middle is more than a base that shakes a joint does. Absolute motion
-    y of a force-driven link is not looked at: it may be in metres, or turn freely.
-
-    Parameters
-    ----------
-    channels : dict of arrays of shape (N,)
-        In rad (or m, where the same bounds are wider still).
-    confirmed : collection of str
-        Channels whose unit the user stated: those are believed.
+    """Refuse degrees taken for radians: see `findings.quantities.degrees`, with whose channels (N,) and believed units.
 
     Raises
     ------
     BadInput
         Naming the channel, its peak and the two ways out.
     """
-    suspects = {}
-    if "z" in channels:
-        suspects["z"] = (_peak(channels["z"]), MAX_RELATIVE_RAD)
-    elif {"x", "y"} <= set(channels) and "y" not in confirmed:
-        suspects["y"] = (_peak(channels["y"] - channels["x"]), MAX_RELATIVE_RAD)
-    if "x" in channels:
-        suspects["x"] = (_peak(channels["x"]), MAX_BASE_RAD)
-    beyond = [name for name, (peak, most) in suspects.items() if peak > most and name not in confirmed]
-    if not beyond:
-        return
-    name = beyond[0]
-    peak, most = suspects[name]
-    what = {"z": "relative motion", "y": "motion y - x relative to the base", "x": "base motion"}[name]
-    # When one channel is in degrees so, as a rule, is the other, though it may be too small to look wrong by itself.
-    both = [each for each in ("x", "z", "y") if each in channels and each not in confirmed]
-    degrees, radians = (
-        ",".join(f"{each}={unit}" for each in names) for names, unit in ((both, "deg"), (beyond, "rad"))
-    )
-    raise wrong(
-        f"{where}, column {name}",
-        f"a {what} of up to {number(peak)}",
-        f"radians (at most {number(most)} is believable for a joint); if it is in degrees pass --unit {degrees}, "
-        f"if it truly is in radians pass --unit {radians}",
-    )
-
-
-def _peak(values: np.ndarray) -> float:
-    """Largest distance from the middle of the range: an encoder's arbitrary zero must not count as motion."""
-    return float(values.max() - values.min()) / 2
+    for finding in degrees(channels, confirmed):
+        raise BadInput(finding.sentence(where))

@@ -49,7 +49,7 @@ def find(
     channels = {name: values for name, values in channels.items() if values.size >= SHORTEST}
     if not channels:
         return []
-    found = quantities.quantities(channels, options)
+    found = quantities.quantities(channels, options, units_stated)
     # What one check finds would set off the next: a code stands out, a wrap shifts, and neither follows anything. So a channel is
     # looked at further once it is mended, and the whole record once no channel waits for an answer.
     for checks in (jumps.known_wraps, spikes.codes, jumps.wraps, held.held, spikes.spikes):
@@ -59,7 +59,7 @@ def find(
         channels = mend.after(t, channels, {}, new)[1] if new else channels
         found += new
     if not _waiting(found):
-        odd = limits.clipped(channels) or held.held_rows(channels) or jumps.shifts(channels)
+        odd = limits.clipped(channels) or held.held_rows(channels) or jumps.shifts(t, channels)
         found += _open(odd, options, units_stated)
         found += _open(answers.answers(t, channels), options, units_stated)
     if not _waiting(found):

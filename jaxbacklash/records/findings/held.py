@@ -25,7 +25,15 @@ MOST = 0.2
 
 
 def held(channels: Mapping[str, np.ndarray]) -> list[Finding]:
-    """Channels that hold their value."""
+    """Channels that hold their value; of a force that is how amplifiers put it out."""
+    channels = {name: values for name, values in channels.items() if name != "F"}
+    # Whole rows that stand still for longer are said by `held_rows`.
+    together = (
+        np.all([np.diff(values) == 0.0 for values in channels.values()], axis=0) if len(channels) > 1 else np.zeros(0, bool)
+    )
+    first, length = runs(together)
+    rows = [np.arange(a + 1, a + n + 1) for a, n in zip(first, length, strict=True) if n >= HELD_ROWS - 1]
+    lost = np.concatenate([np.zeros(0, dtype=int), *rows])
     steady = {name: refreshed_every(values) for name, values in channels.items()}
     found = []
     for name, values in channels.items():
@@ -34,7 +42,7 @@ def held(channels: Mapping[str, np.ndarray]) -> list[Finding]:
             what = f"has a new value every {every} rows only and holds it in between"
             found.append(Finding("held", ASK, name, what, f"--despike {name}", size=float(every)))
             continue
-        stale = stale_rows(values)
+        stale = np.setdiff1d(stale_rows(values), lost)
         if stale.size:
             what = f"{listed_rows(stale)} repeat{'s' if stale.size == 1 else ''} the value before while the motion goes on"
             few = stale.size <= max(3, 1e-3 * values.size)

@@ -24,6 +24,8 @@ SHIFT = 20.0
 """Times the noise and the liveliness of the motion around it that a lasting shift is at least."""
 ROWS_LOST = 3.0
 """Steps of the motion around it that a shift is at least."""
+GAP = 1.5
+"""Usual steps of time over which a position may well have moved on."""
 LIVELY = 5.0
 """Times its noise by which another channel moves in a sample, where it is to tell lost counts from lost rows."""
 SHIFTS = 5
@@ -123,14 +125,16 @@ def _not_lost_rows(channels: Mapping[str, np.ndarray], name: str, row: int, size
     return False
 
 
-def shifts(channels: Mapping[str, np.ndarray]) -> list[Finding]:
+def shifts(t: np.ndarray, channels: Mapping[str, np.ndarray]) -> list[Finding]:
     """Counts lost: x, y or z alone goes on from another zero."""
+    pauses = np.diff(t)
+    gaps = np.flatnonzero(pauses > GAP * np.median(pauses))
     every = {name: shifts_of(channels[name]) for name in POSITIONS if name in channels}
     found = []
     for name, (rows, sizes) in every.items():
         # A base that really jumps takes y along, or z the other way.
         others = [row for other, (those, _) in every.items() if other != name for row in those]
-        alone = ~np.isin(rows, others)
+        alone = ~np.isin(rows, [*others, *gaps])
         sure = [_not_lost_rows(channels, name, int(row), size) for row, size in zip(rows, sizes, strict=True)]
         alone &= np.array(sure, dtype=bool)
         if not alone.any():

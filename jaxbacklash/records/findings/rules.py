@@ -90,6 +90,12 @@ RULES: dict[str, Rule] = {
         "--columns",
     ),
     "quantity": Rule("a position read from a column named as an acceleration or a rate of turn", "its name", ASK),
+    "degrees": Rule(
+        "degrees taken for radians",
+        "a relative motion over 1 rad, a base over a turn, to one side of the middle",
+        ASK,
+        "--unit",
+    ),
     "counts": Rule("whole numbers for radians or metres", "a range of 20", ASK, "--unit"),
     "no-answer": Rule(
         "an observed channel of white noise or of three counts while the input moves",

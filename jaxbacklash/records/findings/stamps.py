@@ -35,7 +35,7 @@ def stamps(t: np.ndarray) -> list[Finding]:
     if back.size:
         row = int(back[0])
         more = f", and {back.size - 1} more such rows" if back.size > 1 else ""
-        what = f"goes back from {t[row]:.9g} at row {row + 1} to {t[row + 1]:.9g} at row {row + 2}{more}"
+        what = f"goes back from {t[row]:.9g} s at row {row + 1} to {t[row + 1]:.9g} s at row {row + 2}{more}"
         again = back.size <= FEW and bool(np.all(steps[back] < -FEW * np.median(np.abs(steps))))
         remedy = f"--to {t[row]:.9g}" if again else f"--rate {_round(t):.6g}"
         return [Finding("backwards", REFUSE, "t", f"{what}{AGAIN if again else ''}", remedy, (row,))]
