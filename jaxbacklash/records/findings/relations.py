@@ -33,7 +33,7 @@ SAMPLES = 32768
 """Samples that are enough to see slow motion; from a longer record its first ones."""
 
 FAST = 512
-"""Samples are taken in whole numbers of so many: a Fourier transform over a length with large prime factors is ten times slower."""
+"""Samples are taken in whole numbers of so many: a Fourier transform whose length has large prime factors is ten times slower."""
 
 
 def relations(channels: Mapping[str, np.ndarray], extras: Mapping[str, np.ndarray]) -> list[Finding]:
