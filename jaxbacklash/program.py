@@ -8,12 +8,17 @@ from __future__ import annotations
 import contextlib
 import os
 import shlex
+import threading
 import warnings
 from pathlib import Path
 
-from .errors import BadInput
+from .errors import BadInput, NoAnswer
 from .private_files import holds_only_own_files, make_private_folder
 
+THREADS = 16
+"""Threads that a computation starts, and so many more for each core: a refinement on two cores was seen to have 25."""
+FEW_PROCESSES = 4096
+"""A limit on a user's processes and threads from which on it need not be tried whether there are enough."""
 MOST_CORES = 8
 """More devices than this do not speed up a fit of usual length."""
 
@@ -91,6 +96,7 @@ def start(*, cache: bool = True, devices: int | None = None, brief: bool = False
         # One more, on which all else is computed: see `jaxbacklash.sharing`.
         jax.config.update("jax_num_cpu_devices", shared + 1 if shared > 1 else 1)
     _check_platform()
+    _check_threads()
     if not cache:
         return
     folder = cache_folder()
@@ -121,3 +127,30 @@ def _check_platform() -> None:
     except Exception as why:  # whatever a plugin raises
         text = next(iter(str(why).splitlines()), "") or type(why).__name__
         raise BadInput(f"JAX_PLATFORMS={shlex.quote(asked)}: found no such device ({text}), wanted cpu or nothing") from None
+
+
+def _check_threads() -> None:
+    """Refuse to compute where too few threads may be started: the compiler would abort without a word for a person."""
+    try:
+        import resource
+
+        limit = resource.getrlimit(resource.RLIMIT_NPROC)[0]
+    except (ImportError, AttributeError, ValueError, OSError):
+        return
+    if limit == resource.RLIM_INFINITY or limit >= FEW_PROCESSES:
+        return
+    wanted, go_on, started = THREADS + 8 * cores(), threading.Event(), []
+    try:
+        for _ in range(wanted):
+            one = threading.Thread(target=go_on.wait, daemon=True)
+            one.start()
+            started.append(one)
+    except RuntimeError:
+        raise NoAnswer(
+            f"this user may start only {len(started)} more threads (ulimit -u is {limit}), and computing takes up to {wanted}; "
+            "raise that limit or end other programs"
+        ) from None
+    finally:
+        go_on.set()
+        for one in started:
+            one.join()

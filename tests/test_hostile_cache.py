@@ -11,6 +11,7 @@ import pytest
 
 from jaxbacklash import program, program_file, read_ahead
 from jaxbacklash.compiled import kept_jit
+from jaxbacklash.errors import NoAnswer
 from jaxbacklash.private_files import is_private_folder, make_private_folder, read_private
 from jaxbacklash.program_file import MAGIC, MONTH
 from jaxbacklash.read_ahead import reading_ahead
@@ -219,3 +220,22 @@ def test_a_platform_that_is_not_there_is_told(tmp_path):
     code, _, err = ended("fit", "r.csv", "--inertia", "2", cwd=tmp_path, JAX_PLATFORMS="cuda")
     assert code == 2
     assert "JAX_PLATFORMS" in one_sentence(err)
+
+
+@posix
+def test_too_few_threads_are_told_before_the_compiler_aborts(monkeypatch):
+    import resource
+
+    monkeypatch.setattr(resource, "getrlimit", lambda which: (7, 7))
+    start, begun = threading.Thread.start, []
+
+    def seven(self):
+        if len(begun) == 7:
+            raise RuntimeError("can't start new thread")
+        begun.append(self)
+        start(self)
+
+    monkeypatch.setattr(threading.Thread, "start", seven)
+    with pytest.raises(NoAnswer, match=r"only 7 more threads \(ulimit -u is 7\)"):
+        program._check_threads()
+    assert not any(one.is_alive() for one in begun)
