@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sys
 import time
+import warnings
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ from ..dynamics.family import CASES, PaperCase
 from ..dynamics.follow import trace_exact
 from ..dynamics.labels import need_h5netcdf, write_netcdf
 from ..dynamics.maps import Request, labelled_map, request
+from ..dynamics.tile_folder import claim, remove, used_alone
 from ..dynamics.tiles import need_zarr
 from ..errors import BadInput
 from ..whole_file import write_whole
@@ -42,9 +43,10 @@ def run(
     except OSError as error:
         raise BadInput(f"--out {out}: cannot make its folder ({error.strerror})") from None
     store = out.with_name(out.name + ".tiles")
+    claim(store, wanted.fingerprint())
     ready = time.perf_counter()
     start_up = process_age() or ready - begun
-    with progress(as_json) as tell, ThreadPoolExecutor(1) as aside:
+    with used_alone(store), progress(as_json) as tell, ThreadPoolExecutor(1) as aside:
         tell("compiling", 0.0)
         compile_beside_imports(wanted, aside)
         compiled = time.perf_counter()
@@ -64,7 +66,8 @@ def run(
         tell("drawing", 1.0)
         picture(drawn, result, out)
         writing.result()
-        shutil.rmtree(store)
+        if left := remove(store):
+            warnings.warn(f"{store} stays: it holds {left[0]!r}, which is no part of a store of tiles", stacklevel=2)
     if as_json:
         sys.stdout.write(json_text(result))
     else:

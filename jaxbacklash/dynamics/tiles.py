@@ -10,16 +10,15 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..errors import BadInput
+from ..errors import BadInput, NoAnswer
+from ..whole_file import write_whole
 from .maps import KEPT, VARIABLES, Request
-
-ARRAYS, RECORDS = "arrays.zarr", "records"
+from .tile_folder import ARRAYS, RECORDS, claim
 
 
 class MemoryTiles:
@@ -45,51 +44,80 @@ class TileStore:
     Raises
     ------
     BadInput
-        zarr is not installed, the folder cannot be written, or holds another map.
+        zarr is not installed, or the folder cannot be written, is not a store of tiles, or holds another map.
     """
 
     def __init__(self, path: Path, wanted: Request) -> None:
         zarr = need_zarr()
         self.path, self._boxes = path, wanted.tiles()
-        mark = path / "request.json"
-        told = json.dumps({"fingerprint": wanted.fingerprint()})
+        self._solvers: dict[int, str] = {}
+        claim(path, wanted.fingerprint())
         try:
-            (path / RECORDS).mkdir(parents=True, exist_ok=True)
-            if not mark.exists():
+            self.arrays = self._open(zarr, wanted)
+        except Exception:  # missing, damaged or of another shape: made anew, and with it the tiles
+            try:
                 self._create(zarr, wanted)
-                _write_whole(mark, told)
-        except OSError as error:
-            raise BadInput(f"{path}: cannot be used as a store of tiles ({error.strerror or error})") from None
-        if mark.read_text(encoding="utf-8") != told:
-            raise BadInput(
-                f"{path} holds tiles of another map (other axes, periods, start or version): remove it or name another output"
-            )
-        self._group = zarr.open_group(path / ARRAYS, mode="r+")
-        self.arrays = {name: self._group[name] for name in VARIABLES}
+                self.arrays = self._open(zarr, wanted)
+            except OSError as error:
+                raise BadInput(f"{path}: cannot be used as a store of tiles ({error.strerror or error})") from None
+
+    def _open(self, zarr: Any, wanted: Request) -> dict[str, Any]:
+        group = zarr.open_group(self.path / ARRAYS, mode="r+")
+        arrays = {name: group[name] for name in VARIABLES}
+        for name, kind in VARIABLES.items():
+            found = arrays[name]
+            if (found.shape, found.chunks, found.dtype) != (*self._layout(wanted, name), np.dtype(kind)):
+                raise ValueError(f"{name}: not the array of this map")
+        return arrays
 
     def _create(self, zarr: Any, wanted: Request) -> None:
         group = zarr.open_group(self.path / ARRAYS, mode="w")
         for name, kind in VARIABLES.items():
-            lead = (wanted.plan.samples,) if name in KEPT else ()
-            group.create_array(name, shape=shape_of(wanted, name), chunks=(*lead, *wanted.tile), dtype=kind, overwrite=True)
+            shape, chunks = self._layout(wanted, name)
+            group.create_array(name, shape=shape, chunks=chunks, dtype=kind, overwrite=True)
+
+    def _layout(self, wanted: Request, name: str) -> tuple[tuple[int, ...], tuple[int, ...]]:
+        lead = (wanted.plan.samples,) if name in KEPT else ()
+        return shape_of(wanted, name), (*lead, *wanted.tile)
 
     def has(self, k: int) -> bool:
         """True when the tile is there and sound."""
         try:
             record = json.loads(self._record(k).read_text(encoding="utf-8"))
-            return record["sha256"] == _checksum({name: self.arrays[name][place(self._boxes[k], name)] for name in VARIABLES})
+            solver = record["solver"]
+            sound = record["sha256"] == _checksum({name: self.arrays[name][place(self._boxes[k], name)] for name in VARIABLES})
         except Exception:  # whatever is wrong with a half-written or damaged tile, the cure is to compute it again
             return False
+        if not sound or not isinstance(solver, str):
+            return False
+        self._solvers[k] = solver
+        return True
 
     def put(self, k: int, numbers: dict[str, np.ndarray], solver: str) -> None:
-        self._record(k).unlink(missing_ok=True)
-        for name, values in numbers.items():
-            self.arrays[name][place(self._boxes[k], name)] = values
-        _write_whole(self._record(k), json.dumps({"sha256": _checksum(numbers), "solver": solver}))
+        """Keep a tile.
+
+        Raises
+        ------
+        NoAnswer
+            It cannot be written; those before it are kept.
+        """
+        try:
+            if self._record(k).is_dir():
+                raise IsADirectoryError(21, f"{self._record(k).name} is a folder")
+            self._record(k).unlink(missing_ok=True)
+            for name, values in numbers.items():
+                self.arrays[name][place(self._boxes[k], name)] = values
+            write_whole(self._record(k), json.dumps({"sha256": _checksum(numbers), "solver": solver}), lasting=True)
+        except OSError as error:
+            raise NoAnswer(
+                f"{self.path}: a tile cannot be written ({error.strerror or error}); the tiles written so far are kept, the same "
+                "command goes on from there"
+            ) from None
+        self._solvers[k] = solver
 
     @property
     def solvers(self) -> set[str]:
-        return {json.loads(file.read_text(encoding="utf-8"))["solver"] for file in (self.path / RECORDS).glob("*.json")}
+        return set(self._solvers.values())
 
     def _record(self, k: int) -> Path:
         return self.path / RECORDS / f"{k:06d}.json"
@@ -119,12 +147,3 @@ def _checksum(numbers: dict[str, Any]) -> str:
     for name in VARIABLES:
         total.update(np.ascontiguousarray(numbers[name]).tobytes())
     return total.hexdigest()
-
-
-def _write_whole(path: Path, text: str) -> None:
-    part = path.with_name(path.name + ".part")
-    with part.open("w", encoding="utf-8") as file:
-        file.write(text)
-        file.flush()
-        os.fsync(file.fileno())
-    part.replace(path)
