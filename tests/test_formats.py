@@ -211,6 +211,26 @@ def test_mat_73_with_structs_cells_text_and_matrices(tmp_path, matlab):
     assert "link" in table.left_out["away"]
 
 
+@pytest.mark.parametrize("newer", [False, True])
+def test_sparse_matrices(tmp_path, newer):
+    x = np.where(np.abs(X) > 0.05, X, 0.0)
+    if newer:
+        columns = sparse.csc_matrix(x[:, None])
+        with h5py.File(tmp_path / "rec.mat", "w", userblock_size=512) as file:
+            group = file.create_group("x")
+            group.attrs["MATLAB_class"], group.attrs["MATLAB_sparse"] = np.bytes_("double"), np.uint64(400)
+            group["data"], group["ir"], group["jc"] = columns.data, columns.indices, columns.indptr
+            claims = file.create_group("big")
+            claims.attrs["MATLAB_class"], claims.attrs["MATLAB_sparse"] = np.bytes_("double"), np.uint64(4)
+            claims["jc"] = np.zeros(3, dtype=np.uint64)
+    else:
+        big = sparse.csc_matrix(([1.0], ([0], [0])), shape=(10**6, 10**6))
+        io.savemat(tmp_path / "rec.mat", {"x": sparse.csc_matrix(x[None]), "big": big})
+    table = table_of(tmp_path / "rec.mat")
+    holds(table, x=x)
+    assert "(1000000, 1000000)" in table.left_out["big"] or newer
+
+
 def test_a_variable_that_claims_terabytes_is_refused(tmp_path):
     io.savemat(tmp_path / "rec.mat", {"x": np.zeros((500, 1))})
     data = (tmp_path / "rec.mat").read_bytes()

@@ -193,6 +193,26 @@ def test_a_time_channel_in_the_file_is_the_time(tmp_path):
     assert table.rate_hz is None
 
 
+def test_a_rate_that_a_group_states(tmp_path):
+    from nptdms import ChannelObject, GroupObject, TdmsWriter
+
+    with TdmsWriter(tmp_path / "rec.tdms") as file:
+        group = GroupObject("Log", {"Sample Rate": 200.0, "rig": 4})
+        file.write_segment([group, ChannelObject("Log", "x", course()["x"]), ChannelObject("Log", "angle (deg)", course()["z"])])
+    table = table_of(tmp_path / "rec.tdms")
+    assert table.rate_hz == 200
+    assert [column.unit for column in table.columns] == ["", "deg"]
+    assert all(column.clock is None for column in table.columns)
+
+
+def test_a_folder_that_ros_2_recorded(files):
+    folder = files / "folder of rec.db3"
+    (files / "rec.db3").replace(folder / f"{folder.name}.db3")
+    table = table_of(folder)
+    (folder / f"{folder.name}.db3").replace(files / "rec.db3")
+    np.testing.assert_allclose(np.degrees(table.called("x/position")[0].values), course()["x"], atol=1e-12)
+
+
 def test_universal_files_uneven_single_spectra_and_cut(tmp_path):
     wanted = course()
     wanted["t"] = wanted["t"] ** 1.01

@@ -122,6 +122,8 @@ JSON_FORMS = {
     "split by name": {"names": ["t", "x", "z"], "values": [T.tolist(), X.tolist(), Z.tolist()]},
     "by row number": {name: {str(row): value for row, value in enumerate(values)} for name, values in zip("txz", (T, X, Z))},
     "rows below names": [["t", "x", "z"], *ROWS],
+    "channels": {"channels": [{"name": name, "values": values.tolist()} for name, values in zip("txz", (T, X, Z))]},
+    "series": {"results": [{"series": [{"name": "rig", "columns": ["t", "x", "z"], "values": ROWS}]}]},
     "with units": {name: {"unit": "deg", "data": values.tolist()} for name, values in zip("txz", (T, X, Z))},
     "numbers as text": {"t": [str(value) for value in T], "x": X.tolist(), "z": Z.tolist()},
 }
@@ -199,8 +201,10 @@ def test_hdf5_with_units_rates_names_and_links_in_circles(tmp_path):
         file["state"] = ["on"] * 120
         file["raw"] = np.rec.fromarrays([X, Z], names="a,b")
         file["picture"] = np.zeros((300, 300))
+        file["frame/block0_values"], file["frame/block0_items"] = np.column_stack([X, Z]), [b"left", b"right"]
     table = table_of(tmp_path / "rec.h5")
-    assert {"run/x", "run/z", "t", "base", "rel", "state", "raw.a", "raw.b"} == set(table.names)
+    others = {"frame/left", "frame/right", "frame/block0_items"}
+    assert set(table.names) == {"run/x", "run/z", "t", "base", "rel", "state", "raw.a", "raw.b"} | others
     assert table.called("x")[0].unit == "deg"
     assert table.rate_hz == 200
     np.testing.assert_array_equal(table.called("m/rel")[0].values, Z)
@@ -218,7 +222,9 @@ def test_hdf5_never_reads_other_files_nor_what_claims_terabytes(tmp_path):
         layout[:] = h5py.VirtualSource(tmp_path / "other.h5", "x", shape=(120,))
         file.create_virtual_dataset("view", layout)
         file.create_dataset("stolen", shape=(100,), dtype="u1", external=[(str(secret), 0, 100)])
-    refused(tmp_path / "rec.h5", "view of data in other files", "data in another file")
+    refused(tmp_path / "rec.h5", "view (a view of another file", "stolen (a view of another file")
+    (tmp_path / "rec.h5").rename(tmp_path / "rec.mat")
+    refused(tmp_path / "rec.mat", "view (a view of another file", "stolen (a view of another file")
     with h5py.File(tmp_path / "huge.h5", "w") as file:
         file.create_dataset("x", shape=(10**13,), dtype="f8", chunks=(1000,))
     refused(tmp_path / "huge.h5", "data set x", "8e+04 GB", "shorter record")

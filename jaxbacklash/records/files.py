@@ -30,7 +30,10 @@ def read_table(path: Path, options: ReadOptions | None = None) -> Table:
     where = str(path)
     try:
         if path.is_dir():
-            raise wrong(where, "a folder", "a file")
+            reader = reader_for(path)
+            if reader is None:
+                raise wrong(where, "a folder", "a file")
+            return reader(path)
         if not path.exists():
             raise wrong(where, "no such file", "a record")
         if not stat.S_ISREG(path.stat().st_mode):

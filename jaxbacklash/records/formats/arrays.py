@@ -106,15 +106,19 @@ class Columns:
 
     def take_rate(self, name: str, value: float) -> None:
         """Take the rate from a single number, where its name says that it is one."""
-        plain = "".join(mark for mark in name.rpartition(".")[2].rpartition("/")[2].lower() if mark.isalnum())
-        rate = value if plain in RATES else 1.0 / value if plain in PERIODS and value else 0.0
-        if LOWEST_RATE <= rate <= HIGHEST_RATE:
-            self.rate_hz = rate
+        self.rate_hz = stated_rate(name, value) or self.rate_hz
 
     def table(self, format: str, details: Mapping[str, str] | None = None) -> Table:
         """All of it, as a reader returns it."""
         columns = with_bare_names(self.columns)
         return Table(columns, format, dict(details or {}), tuple(self.notes), self.rate_hz, left_out=dict(self.left_out))
+
+
+def stated_rate(name: str, value: float) -> float | None:
+    """The rate [Hz] that a single number of this name states; None where it is none."""
+    plain = "".join(mark for mark in name.rpartition(".")[2].rpartition("/")[2].lower() if mark.isalnum())
+    rate = value if plain in RATES else 1.0 / value if plain in PERIODS and value else 0.0
+    return rate if LOWEST_RATE <= rate <= HIGHEST_RATE else None
 
 
 def with_bare_names(columns: Iterable[Column]) -> tuple[Column, ...]:

@@ -60,7 +60,7 @@ def guarded(path: Path, kind: str, wanted: str) -> Iterator[None]:
     with quiet():
         try:
             yield
-        except (BadInput, KeyboardInterrupt):
+        except (BadInput, FileNotFoundError, PermissionError):
             raise
         except Exception as why:  # The libraries raise whatever the damage happens to trip.
             _let_go(why)
@@ -94,6 +94,18 @@ def quiet() -> Iterator[None]:
     finally:
         logging.disable(before)
         sys.unraisablehook = hook
+
+
+class Budget:
+    """What the arrays of a file may still take, by what the file claims, before any of them is allocated."""
+
+    def __init__(self, where: str) -> None:
+        self.where, self.taken = where, 0
+
+    def take(self, size: int, name: str) -> None:
+        """Allow for an array of ``size`` bytes. Raises `BadInput` where all together would be more than `MAX_BYTES`."""
+        self.taken += size
+        bounded(self.taken, f"{self.where}, {name}")
 
 
 def bounded(size: int, where: str, what: str = "numbers") -> None:

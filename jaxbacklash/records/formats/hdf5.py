@@ -11,7 +11,7 @@ import numpy as np
 from ..checks import MIN_SAMPLES
 from ..table import Table
 from .arrays import MAX_CHANNELS, Columns, named_matrix, tidy
-from .guard import bounded, guarded, library
+from .guard import Budget, guarded, library
 
 MAX_DEPTH = 32
 MAX_SETS = 4096
@@ -46,7 +46,7 @@ def read(path: Path) -> Table:
         h5py.File(path, "r") as file,
     ):
         found: dict[str, tuple[Any, np.ndarray]] = {}
-        total = 0
+        budget = Budget(str(path))
         _take_attributes(file, columns)
         for name, item in _items(file, h5py, "", set(), columns):
             _take_attributes(item, columns)
@@ -56,8 +56,7 @@ def read(path: Path) -> Table:
             if why:
                 columns.left_out[name] = why
                 continue
-            total += item.size * item.dtype.itemsize
-            bounded(total, f"{path}, data set {name}")
+            budget.take(item.size * item.dtype.itemsize, f"data set {name}")
             found[name] = (item, _values(item, h5py))
             if len(found) > MAX_SETS:
                 raise ValueError("too many data sets")
@@ -93,10 +92,8 @@ def _unread(item: Any, h5py: Any) -> str:
     """Why a data set is not read; empty where it is."""
     if item.shape is None:
         return "an empty data set"
-    if item.is_virtual and any(source.file_name != "." for source in item.virtual_sources()):
-        return "a view of data in other files, which are not read"
-    if item.external:
-        return "data in another file, which is not read"
+    if elsewhere(item):
+        return "a view of another file, which is not read"
     text = h5py.check_string_dtype(item.dtype) is not None
     if not (item.dtype.kind in "fiubcS" or item.dtype.names or text):
         return "no numbers"
@@ -104,6 +101,11 @@ def _unread(item: Any, h5py: Any) -> str:
     if len(long) > 2 or (len(long) == 2 and (min(long) > MAX_CHANNELS or max(long) < MIN_SAMPLES)):
         return f"an array of shape {item.shape}"
     return ""
+
+
+def elsewhere(item: Any) -> bool:
+    """Whether the values of a data set stand in another file, which may be any file of the user."""
+    return bool(item.external) or (item.is_virtual and any(source.file_name != "." for source in item.virtual_sources()))
 
 
 def _values(item: Any, h5py: Any) -> np.ndarray:
@@ -120,7 +122,7 @@ def _add(found: dict[str, tuple[Any, np.ndarray]], columns: Columns, where: str)
             continue
         arrays.pop(name)
         unit = _attribute(item, UNITS)
-        names = _attribute_names(item)
+        names = _attribute_names(item) or _names_beside(name, found)
         if values.ndim == 2 and len(names) in values.shape and len(names) > 1 and len(set(names)) == len(names):
             rows = values.T if values.shape[1] == len(names) else values
             group = name.rpartition("/")[0]
@@ -158,4 +160,14 @@ def _attribute_names(item: Any) -> list[str]:
             return [tidy(one.decode("utf-8", "replace") if isinstance(one, bytes) else str(one)) for one in value]
         if isinstance(value, str) and "," in value:
             return [tidy(one) for one in value.split(",")]
+    return []
+
+
+def _names_beside(name: str, found: dict[str, tuple[Any, np.ndarray]]) -> list[str]:
+    """Names of a matrix's columns in a data set of text beside it; pandas calls it block0_items beside block0_values."""
+    group, _, own = name.rpartition("/")
+    for each in (*NAMES, own.replace("_values", "_items")):
+        values = found.get(f"{group}/{each}" if group else each, (None, np.empty(0)))[1]
+        if values.ndim == 1 and values.dtype.kind in "SU" and each != own:
+            return [tidy(one.decode("utf-8", "replace") if isinstance(one, bytes) else str(one)) for one in values]
     return []

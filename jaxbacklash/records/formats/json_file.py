@@ -28,6 +28,9 @@ MAX_FILE_BYTES = 256 << 20
 NAMES_KEYS = ("columns", "names", "header", "headers", "fields", "channels", "labels")
 DATA_KEYS = ("data", "values", "rows", "samples", "value", "y")
 UNIT_KEYS = ("unit", "units")
+CALLED_KEYS = ("name", "channel", "label", "id", "topic")
+MAX_PLACES = 16
+"""A longer list within the object of one sample is no vector of that sample."""
 MAX_DEPTH = 8
 WANTED = 'arrays by name such as {"t": [0, 0.002], "x": [0, 0.1], "z": [0, 0.01]}'
 
@@ -89,13 +92,24 @@ def _take(name: str, value: Any, columns: Columns, where: str, depth: int, unit:
     elif isinstance(value, dict):
         _take_object(name, value, columns, where, depth)
     elif isinstance(value, list) and value and all(isinstance(one, dict) for one in value):
-        _take_records(name, value, columns, where)
+        if any(_is_long(each) for one in value for each in one.values()):
+            _take_channels(name, value, columns, where, depth)
+        else:
+            _take_records(name, value, columns, where)
     elif isinstance(value, list) and value and all(isinstance(one, list) for one in value):
         _take_rows(name, value, None, columns, where)
     elif isinstance(value, list):
         columns.add(name, _column(value, f"{where}, column {name or 1}"), unit)
     else:
         columns.add(name, np.array(value if isinstance(value, float | int | bool | str) else np.nan))
+
+
+def _take_channels(name: str, value: list[dict], columns: Columns, where: str, depth: int) -> None:
+    """A list of objects with a list of values each: channels, or tables, that say what they are called."""
+    for number, one in enumerate(value, start=1):
+        called = next((one[key] for key in CALLED_KEYS if isinstance(one.get(key), str)), str(number))
+        rest = {key: each for key, each in one.items() if each is not called}
+        _take(f"{name}/{called}" if name else called, rest, columns, where, depth + 1)
 
 
 def _take_object(name: str, value: dict, columns: Columns, where: str, depth: int) -> None:
@@ -120,6 +134,13 @@ def _take_object(name: str, value: dict, columns: Columns, where: str, depth: in
             _take(f"{name}/{key}" if name else key, one, columns, where, depth + 1, stated if isinstance(stated, str) else "")
 
 
+def _is_long(value: Any) -> bool:
+    """Whether a value holds a course in time rather than what belongs to one sample."""
+    if isinstance(value, dict):
+        return any(map(_is_long, value.values()))
+    return isinstance(value, list) and (len(value) > MAX_PLACES or any(map(_is_long, value)))
+
+
 def _is_names(value: Any) -> bool:
     return isinstance(value, list) and bool(value) and all(isinstance(one, str) for one in value)
 
@@ -142,7 +163,7 @@ def _flat(record: dict, prefix: str = "", depth: int = 0) -> dict[str, Any]:
     """An object's values by "group/name"."""
     flat: dict[str, Any] = {}
     for key, one in record.items():
-        if isinstance(one, list) and len(one) <= 16:
+        if isinstance(one, list) and len(one) <= MAX_PLACES:
             one = {str(place): each for place, each in enumerate(one, start=1)}
         if isinstance(one, dict) and depth < MAX_DEPTH:
             flat |= _flat(one, f"{prefix}{key}/", depth + 1)

@@ -51,7 +51,7 @@ def read(path: Path) -> Table:
             from .mat73 import read_tree
         else:
             from .mat5 import read_tree
-        tree, missing = with_objects(read_tree(path), path)
+        tree, missing = with_objects(read_tree(path), path, newer)
         return _table(tree, path, "mat 7.3" if newer else "mat", missing)
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from .guard import MAX_BYTES, bounded
+from .guard import MAX_BYTES, Budget
 from .mat_tree import Instance, Tree, Unread
 
 ITEM_BYTES = {"single": 4, "logical": 1, "int8": 1, "uint8": 1, "int16": 2, "uint16": 2, "int32": 4, "uint32": 4}
@@ -20,6 +20,7 @@ def read_tree(path: Path) -> Tree:
     """The variables of the file; raises whatever SciPy does on a damaged one."""
     from scipy import io  # a tenth of a second to import, and few records need it
 
+    budget = Budget(str(path))
     # SciPy cannot list files that hold values of classes.
     with contextlib.suppress(TypeError):
         for name, shape, kind in io.whosmat(path):
@@ -27,7 +28,7 @@ def read_tree(path: Path) -> Tree:
             for length in shape:
                 count *= int(length)
             if kind != "sparse":
-                bounded(count * ITEM_BYTES.get(kind, 8), f"{path}, array {name}")
+                budget.take(count * ITEM_BYTES.get(kind, 8), f"array {name}")
     variables = io.loadmat(path)
     return {name: plain(value) for name, value in variables.items() if not name.startswith("__")}
 

@@ -9,12 +9,13 @@ import numpy as np
 
 from .arrays import tidy
 from .mat5 import plain
+from .mat73 import refers_elsewhere
 from .mat_tree import Instance, Measured, Tree, has_instances
 
 UNITS = ("VariableUnits", "varUnits")
 
 
-def with_objects(tree: Tree, path: Path) -> tuple[Tree, bool]:
+def with_objects(tree: Tree, path: Path, newer: bool) -> tuple[Tree, bool]:
     """The tree of a file with its tables as structs of columns.
 
     Parameters
@@ -22,6 +23,8 @@ def with_objects(tree: Tree, path: Path) -> tuple[Tree, bool]:
     tree : dict
         As `mat5.read_tree` or `mat73.read_tree` returns it.
     path : Path
+    newer : bool
+        Whether the file is of version 7.3.
 
     Returns
     -------
@@ -30,7 +33,7 @@ def with_objects(tree: Tree, path: Path) -> tuple[Tree, bool]:
     missing : bool
         Whether mat-io would be needed and is not installed.
     """
-    if not has_instances(tree):
+    if not has_instances(tree) or (newer and refers_elsewhere(path)):
         return tree, False
     try:
         import matio

@@ -70,7 +70,7 @@ def reader_for(path: Path) -> Reader | None:
     Parameters
     ----------
     path : Path
-        A file that exists.
+        A file that exists, or a folder that ROS 2 recorded, with its metadata.yaml.
 
     Returns
     -------
@@ -83,6 +83,8 @@ def reader_for(path: Path) -> Reader | None:
     OSError
         When the file cannot be opened.
     """
+    if path.is_dir():
+        return functools.partial(_read, "rosbag") if (path / "metadata.yaml").is_file() else None
     suffix = path.suffix.lower()
     if suffix not in READERS:
         suffix = _by_content(path) or suffix

@@ -23,7 +23,7 @@ def read(path: Path) -> Table:
     Parameters
     ----------
     path : Path
-        A .bag file, a .db3 file or one in a folder that ROS 2 recorded.
+        A .bag file, a .db3 file, or a folder that ROS 2 recorded.
 
     Returns
     -------
@@ -52,6 +52,8 @@ def read(path: Path) -> Table:
 
 
 def _begins(path: Path) -> bytes:
+    if path.is_dir():
+        return b""
     with open(path, "rb") as file:
         return file.read(len(FIRST))
 
@@ -59,7 +61,7 @@ def _begins(path: Path) -> bytes:
 @contextlib.contextmanager
 def _named(path: Path, suffix: str) -> Iterator[Path]:
     """The file under a name with the suffix by which the library tells kinds of bags apart."""
-    if path.suffix == suffix:
+    if path.suffix == suffix or path.is_dir():
         yield path
         return
     with tempfile.TemporaryDirectory() as folder:

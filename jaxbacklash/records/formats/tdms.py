@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..table import Table
-from .arrays import seconds
+from .arrays import seconds, stated_rate
 from .clocks import group_columns, is_time, with_common_time
 from .guard import bounded, guarded, library
 
@@ -62,8 +62,18 @@ def read(path: Path) -> Table:
                 clocks[key] = first + step * np.arange(samples)
             found.append((channel.group_name, channel.name, values, unit, None if key is None else clocks[key]))
         version = str(file.tdms_version)
+        stated = None if timed else _stated_rate([file, *file.groups()])
     columns, rate = with_common_time(group_columns(found))
-    return Table(columns, "tdms", {"version": version}, tuple(notes), rate, left_out=left_out)
+    return Table(columns, "tdms", {"version": version}, tuple(notes), rate or stated, left_out=left_out)
+
+
+def _stated_rate(items: list) -> float | None:
+    """The rate that a property of the file or of a group states."""
+    for item in items:
+        for name, value in item.properties.items():
+            if isinstance(value, float | int) and (rate := stated_rate(str(name), float(value))):
+                return rate
+    return None
 
 
 def _unit(channel: Any) -> str:
