@@ -46,7 +46,7 @@ def call(words: Sequence[str], folder: Path) -> Outcome:
     from jaxbacklash import cli
 
     out, err, begun = io.StringIO(), io.StringIO(), time.monotonic()
-    with _typed(words, folder), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+    with _typed(words, folder), _staying(), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         try:
             cli.main()
             code = 0
@@ -64,13 +64,22 @@ def read_only(words: Sequence[str], folder: Path) -> Outcome:
 
     records: list[Any] = []
 
-    def stop(given: Sequence[Any], **_: Any) -> Any:
+    def keep(given: Sequence[Any], **_: Any) -> None:
         records.extend(given)
-        raise SystemExit(0)
 
-    with mock.patch.object(fit, "fit_records", stop):
+    with mock.patch.object(fit, "fit_records", keep), mock.patch.object(fit, "deliver"):
         outcome = call(words, folder)
     return Outcome(outcome.code, outcome.out, outcome.err, outcome.seconds, tuple(records))
+
+
+@contextlib.contextmanager
+def _staying() -> Iterator[None]:
+    """What a command does to its process at its end, which is not its own here, is left out."""
+    from jaxbacklash import stopping
+    from jaxbacklash.commands import outcome
+
+    with mock.patch.object(stopping, "end_when_told"), mock.patch.object(outcome, "let_go_of_output"):
+        yield
 
 
 @contextlib.contextmanager

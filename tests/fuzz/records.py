@@ -114,7 +114,8 @@ def channels_that_tell_nothing(rng, folder: Path) -> Case:
 
 @kind("records", 1)
 def too_short_or_slow(rng, folder: Path) -> Case:
-    columns = {name: values[: int(pick(rng, 0, 1, 2, 3, 10, 63, 64, 65, 130))] for name, values in good_columns().items()}
+    rows = int(pick(rng, 0, 1, 2, 3, 10, 63, 64, 65, 130))
+    columns = {name: values[:rows] for name, values in good_columns().items()}
     columns["t"] = columns["t"] * float(pick(rng, 1, 1, 1000, 1e6, 1e-6))
     return _case(rng, folder, csv_text(columns))
 

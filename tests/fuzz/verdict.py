@@ -63,6 +63,8 @@ def _ending(case: Case, run: Run) -> list[str]:
         return [f"hang: ended after {run.seconds:.0f} s"]
     if "Traceback" in run.err or run.code == -1:
         return [f"traceback: {(run.err.strip().splitlines() or [''])[-1][:300]}"]
+    if "internal error" in run.err:
+        return [f"internal error: {run.err.strip()[-300:]}"]
     if run.after_signal is not None:
         return _interrupted(run)
     if run.code == 0:

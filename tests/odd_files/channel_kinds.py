@@ -21,11 +21,11 @@ def as_link(draft: Draft) -> None:
         draft.reference.channels["y"] = z + draft.reference.channels["x"]
 
 
-@kind("x", offset=np.pi - 0.02)
+@kind("x")
 def wrap_at_pi(draft: Draft, rng) -> None:
-    """The base's angle is kept between -pi and pi, or 0 and 2 pi, and the motion crosses that."""
-    x = draft.column("x")
-    x.values = (x.values + np.pi) % TURN - np.pi
+    """The base's angle is kept between -pi and pi, or 0 and 2 pi, and the motion crosses that; its zero is elsewhere."""
+    x, start = draft.column("x"), float(pick(rng, 0.0, np.pi))
+    x.values = (x.values + np.pi - start - 0.02 + np.pi) % TURN - np.pi + start
     _unwrapped(draft, rng, r"2 ?pi|turn|6\.28|wrap")
 
 
@@ -43,9 +43,6 @@ def wrap_at_360(draft: Draft, rng) -> None:
 def wrap_of_counts(draft: Draft, rng) -> None:
     """Counts of an encoder of 2^18 a turn in a counter of 12 or 13 bits."""
     count, bits = TURN / 2**18, int(pick(rng, 12, 13))
-    if draft.reference is not None:  # noise must not take the first count below zero: where it began would be lost
-        draft.reference.channels["x"] = draft.reference.channels["x"] + 8.0 * count
-    draft.column("x").values = draft.column("x").values + 8.0 * count
     for channel in "xz":
         draft.column(channel).values = np.round(draft.column(channel).values / count)
         draft.options += ["--scale", f"{channel}={count:.9g}"]
@@ -59,10 +56,8 @@ def _unwrapped(draft: Draft, rng, *words: str) -> None:
         draft.options += ["--unwrap", "x"]
     else:
         draft.expect(REFUSED, r"\bx\b", r"row|line", r"--unwrap", *words, remedy="--unwrap")
-    if draft.tolerance < 1e-6:
-        draft.tolerance = 1e-6
-    # A whole turn more or less is the same angle.
-    draft.kinds.append("whole turns")
+    draft.tolerance = max(draft.tolerance, 1e-6)
+    draft.kinds.append("zero is lost")
 
 
 @kind("x z")

@@ -113,6 +113,7 @@ class Draft:
     def write(self, folder: Path) -> Path:
         """Write the file into a folder."""
         path = folder / self.name
+        path.unlink(missing_ok=True)
         if self.writer is not None:
             self.writer(self, path)
             return path

@@ -55,6 +55,8 @@ def json_text(draft: Draft, rng) -> None:
         path.write_text(json.dumps(whole))
 
     draft.writer, draft.suffix = write, ".json"
+    if shape == 3:
+        draft.expect(SAID, r"data[./]t")
 
 
 @kind(ALL)

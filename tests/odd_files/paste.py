@@ -29,7 +29,7 @@ def offers(message: str) -> list[str]:
         flag, value = found[1], found[2]
         text, stop = flag, found.end(1)
         if flag not in NO_VALUE:
-            cleaned = value.rstrip(".,:)") if value is not None else ""
+            cleaned = (value or "") if flag == "--decimal" else (value or "").rstrip(".,:)")
             if value is None or not re.fullmatch(_VALUES.get(flag, r".+"), cleaned):
                 continue
             text, stop = f"{flag} {cleaned}", found.start(2) + len(cleaned)

@@ -60,7 +60,7 @@ def spreadsheet_days(draft: Draft, rng) -> None:
     draft.column("t").cells = [f"{day:.{pick(rng, 10, 11)}f}" for day in days]
     draft.rename(t=pick(rng, "Time", "Zeit"))
     draft.tolerance = 1e-4  # the tenth decimal of a day is 9 us
-    draft.expect(SAID, r"\bt\b|time", r"day|--unit t=")
+    draft.expect(SAID, r"\bt\b|time", r"day|--unit t=|uneven")
 
 
 @kind("time names")
@@ -89,7 +89,7 @@ def milliseconds(draft: Draft, rng) -> None:
     draft.expect(REFUSED, r"column t|\bt\b", unit, remedy=f"t={unit}")
 
 
-@kind("time")
+@kind("time names units head")
 def no_time(draft: Draft, rng) -> None:
     """No time column; the rate is known, or asked for."""
     draft.columns.remove(draft.column("t"))
