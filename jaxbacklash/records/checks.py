@@ -1,7 +1,7 @@
 """What a record must be: every refusal that concerns its channels, one sentence each.
 
 A check takes arrays and `where`, the file as the user named it, and raises `BadInput` or returns. The refusals that
-concern the times alone are in `time_axis`; what is merely odd is in `suspicions`.
+concern the times alone are in `time_axis`; what is odd is in `findings`.
 """
 
 from collections.abc import Callable
