@@ -185,7 +185,7 @@ CASES = [
     ("mapping without =", table(without(), "--columns", "enc2"), ["--columns", '"enc2"', "x=VALUE"]),
     ("mapping of nothing", table(without(), "--columns", "z="), ["--columns", '"z="']),
     ("mapping twice", table(without(), "--columns", "z=a,z=b"), ["--columns", "the channel z twice"]),
-    ("one column for two", table(without(), "--columns", "z=a,y=a"), ["--columns", '"a" for z and for y']),
+    ("one column for two", table(without(), "--columns", "x=z,z=z"), ['"z" for x and for z', "one channel for it"]),
     ("mapping of no channel", table(without(), "--columns", "q=enc2"), ["--columns", '"q"', "t, x, z, y, F, T"]),
     # Units and scales.
     ("unknown unit", table(without(), "--unit", "x=furlong"), ["--unit", '"furlong"', "rad", "deg", "arcsec"]),

@@ -97,6 +97,11 @@ def test_a_name_that_stands_twice_is_told_and_its_clock_compared():
     assert any("the same as those of t" in sentence for sentence in said)
 
 
+def test_one_name_for_two_channels_means_its_columns_one_after_the_other():
+    refused = refusal(table(Column("t", T), Column("angle", X), Column("angle", Z)), columns={"x": "angle", "z": "angle"})
+    assert refused.remedy == "--columns 'x=#2,z=#3'"
+
+
 def test_clocks_apart_are_refused_and_brought_together_on_request():
     late = T + 0.0007
     shifted = np.interp(late, T, Z)

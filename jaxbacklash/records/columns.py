@@ -50,6 +50,7 @@ def pick(table: Table, mapping: Mapping[str, str], where: str, *, timed: bool = 
         When a mapped column, the time or every motion is missing; says which columns it may be, ready to paste.
     """
     numbers = {channel: column_number(table, spec, where) for channel, spec in mapping.items()}
+    _apart(table, mapping, numbers, where)
     for channel in ("t", *CHANNELS):
         if channel not in numbers:
             found = next((n for n, name in enumerate(table.names) if name == channel and n not in numbers.values()), None)
@@ -95,6 +96,21 @@ def column_number(table: Table, spec: str, where: str) -> int:
     more = f" and {len(names) - 12} more" if len(names) > 12 else ""
     quoting = "; a name with a comma is written in quotes, as in 't=\"Time, s\"'" if any("," in name for name in names) else ""
     raise wrong(where, f'no column "{spec}", which --columns names', f"one of {numbered or 'nothing'}{more}{hint}{quoting}")
+
+
+def _apart(table: Table, mapping: Mapping[str, str], numbers: Mapping[str, int], where: str) -> None:
+    """Refuse one column for two channels; where its name stands more than once, each channel may have one of these."""
+    for channel, number in numbers.items():
+        same = [other for other, its in numbers.items() if its == number]
+        if len(same) == 1:
+            continue
+        name = table.columns[number].name
+        found = f'the column "{mapping[channel]}" for {same[0]} and for {same[1]}'
+        alike = [n for n, other in enumerate(table.names) if other == name]
+        if len(alike) < len(same):
+            raise wrong(where, found, "one channel for it")
+        option = columns_option(table, {**numbers, **dict(zip(same, alike, strict=False))})
+        raise BadInput(f'{where}: found {found}, wanted each once; "{name}" stands {len(alike)} times: {option}.', remedy=option)
 
 
 def _empty(column: Column) -> bool:

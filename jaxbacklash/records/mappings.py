@@ -76,13 +76,8 @@ def _known(name: str, option: str) -> None:
 
 
 def parse_columns(text: str | Iterable[str], option: str = "--columns") -> dict[str, str]:
-    """Column names by channel; a column may stand for one channel only. Raises `BadInput`."""
-    pairs = parse_mapping(text, option, commas_in_values=True)
-    for column in pairs.values():
-        same = [other for other in pairs if pairs[other] == column]
-        if len(same) > 1:
-            raise wrong(option, f'the column "{column}" for {same[0]} and for {same[1]}', "one channel for it")
-    return pairs
+    """Column names by channel. Raises `BadInput`."""
+    return parse_mapping(text, option, commas_in_values=True)
 
 
 def parse_units(text: str | Iterable[str], option: str = "--unit") -> dict[str, str]:
