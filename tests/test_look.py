@@ -10,6 +10,8 @@ from jaxbacklash.cli import app
 from jaxbacklash.commands.look import spark
 from jaxbacklash.records.description import describe
 from jaxbacklash.records.options import ReadOptions
+from jaxbacklash.records.roles import guess_roles
+from jaxbacklash.records.table import Column, Table
 
 N, RATE = 1500, 500.0
 T = np.arange(N) / RATE
@@ -85,3 +87,11 @@ def test_a_row_of_blocks_follows_the_values():
     assert spark(np.linspace(0.0, 1.0, 8), 8) == "▁▂▃▄▅▆▇█"
     assert spark(np.array(["a", "b"])) == ""
     assert spark(np.ones(5)) == ""
+
+
+def test_the_joint_in_a_name_says_more_than_the_quantity_behind_it():
+    """Robots write "joint_states/base/position": every motion is a position."""
+    names = ["t", "joint_states/link/position", "joint_states/link/velocity", "joint_states/base/position"]
+    values = [T, X + Z, np.gradient(X + Z, T), X]
+    roles = guess_roles(Table(tuple(map(Column, names, values)), "mcap"))
+    assert {role: names[number] for role, number in roles.items()} == {"t": names[0], "x": names[3], "y": names[1]}

@@ -23,6 +23,9 @@ NAMES: dict[str, tuple[str, ...]] = {
 }
 """Names by channel, the likelier first; compared in lower case without what is in brackets. "F" and "T" stand for themselves."""
 
+QUANTITIES = frozenset(("position", "pos", "angle", "data", "value", "values"))
+"""Last parts of names in groups that say what is measured and not of what."""
+
 FOLLOWS = 0.7
 """Correlation with x above which a motion is that of the link against the ground (y) rather than against the base (z)."""
 
@@ -38,7 +41,10 @@ def numeric(column: Column) -> bool:
 
 def _likeness(channel: str, column: Column) -> int:
     """How well a column's name fits a channel: 3 the same, 2 a usual name, 1 begins with one, 0 not at all."""
-    bare, unit = split_unit(column.name.rpartition("/")[2])
+    *groups, own = column.name.split("/")
+    bare, unit = split_unit(own)
+    if groups and bare.lower() in QUANTITIES:
+        bare = groups[-1]  # robots write "joint_states/elbow/position"
     unit = column.unit or unit
     if unit and spelt(channel, unit) is None:
         return 0  # a force in kip is no motion
