@@ -306,6 +306,13 @@ def test_a_labview_file_of_two_segments(tmp_path):
     assert any("comes again at line" in note for note in table.notes)
 
 
+def test_a_labview_file_without_times(tmp_path):
+    rows = "".join(f"\t{x}\t{z}\t\n" for x, z in zip(X, Z, strict=True))
+    table = read(tmp_path, LVM_TOP.replace("One", "No") + LVM_SEGMENT + rows, "rec.lvm")
+    np.testing.assert_allclose(table.columns[0].values, T, rtol=1e-12)
+    np.testing.assert_array_equal(table.columns[2].values, Z)
+
+
 def test_numbers_without_names_go_by_number(tmp_path):
     table = read(tmp_path, text(names=()))
     assert_good(table, ("column 1", "column 2", "column 3"))

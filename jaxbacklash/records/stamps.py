@@ -24,7 +24,7 @@ _TIME = (
     r"(?:(?P<point>[.,:])(?P<f>\d{1,12}))?(?:\s*(?P<half>[ap])\.?m\.?)?"
 )
 _ZONE = r"\s*(?:(?P<zone>Z|UTC|GMT|[-+]\d{2}(?::?\d{2})?)|[a-z]{3,4})?"
-_STAMP = re.compile(rf"(?:{_DATE}\.?(?:\s*[T,;_:\s-]\s*|$))?(?:{_TIME}{_ZONE})?", re.IGNORECASE)
+_STAMP = rf"(?:{_DATE}\.?(?:\s*[T,;_:\s-]\s*|$))?(?:{_TIME}{_ZONE})?"
 _NUMBERS = ("a", "b", "c", "day", "year", "day2", "year2", "ymd", "days", "h", "m", "s", "hms", "f")
 _OPTIONAL = frozenset(["f", "point", "s", "zone", "minus", "half", "days"])
 _MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
@@ -75,7 +75,7 @@ def read_stamps(values: np.ndarray, where: str, name: str) -> tuple[np.ndarray, 
     rows = np.flatnonzero(known)
     texts = np.ascontiguousarray(values[rows])
     first = str(texts[0])
-    match = _STAMP.fullmatch(first)
+    match = re.fullmatch(_STAMP, first, re.IGNORECASE)
     if match is None or not first:
         raise wrong(
             f"{place}, row {rows[0] + 1}",
@@ -134,7 +134,7 @@ def _of_equal_width(texts: np.ndarray, match: re.Match) -> dict[str, np.ndarray]
 
 def _row_by_row(texts: np.ndarray, rows: np.ndarray, like: re.Match, place: str) -> dict[str, np.ndarray]:
     """The fields of stamps of several widths. A fraction of a second may be left out where it is 0, as some programs do."""
-    matches = [_STAMP.fullmatch(text) for text in texts.tolist()]
+    matches = list(map(re.compile(_STAMP, re.IGNORECASE).fullmatch, texts.tolist()))
     alike = [match is not None and match.string != "" for match in matches]
     parts = zip(*(match.groups() if match else like.groups() for match in matches), strict=True)
     columns = dict(zip(like.re.groupindex, parts, strict=True))

@@ -12,7 +12,7 @@ from ..checks import wrong
 from .cells import MISSING, NUMBER, STAMP, WORD, kinds, split
 from .opening import LONGEST_LINE
 
-WINDOWS = (150, 1200, 10000)
+WINDOWS = (100, 1200, 10000)
 """Lines looked at first, and as many more where rows of values do not fill the end of what was looked at."""
 
 COMMENT = re.compile(r'\s*(?:"?(?:#(?!N/A|NV|VALUE|DIV|NUM|REF)|%|//)|!(?=\s|$))')

@@ -12,7 +12,7 @@ import shlex
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, TextIO, cast
 
 from ..checks import wrong
 
@@ -25,14 +25,10 @@ MOST_UNPACKED = 512 * 2**20
 LONGEST_LINE = 2**20
 """A line of more characters than this is none of a table with one line a sample."""
 
+_OF_TEXT = bytes(byte for byte in range(256) if byte >= 32 or byte in b"\t\n\r\f\v\x1a")
+
 PACKED = {b"BZh": "bzip2", b"\xfd7zXZ": "xz", b"PK\x03\x04": "zip", b"\x28\xb5\x2f\xfd": "zstd", b"7z\xbc\xaf": "7z"}
 """First bytes of packed files that are not unpacked here (a workbook is such a zip file)."""
-
-
-class Lines(io.TextIOWrapper):
-    """The lines of a text file; ``bytes`` is what they are made from."""
-
-    bytes: Bytes
 
 
 @dataclasses.dataclass(frozen=True)
@@ -44,7 +40,7 @@ class Source:
     gzip: bool
 
     @contextlib.contextmanager
-    def lines(self, skip: int = 0) -> Iterator[Lines]:
+    def lines(self, skip: int = 0) -> Iterator[TextIO]:
         """The lines of the file after the first ``skip``; CR, LF and CR LF end one.
 
         Raises
@@ -54,8 +50,7 @@ class Source:
         """
         with unpacked(self.path, self.gzip) as raw:
             # A lone half of a character, or a byte that the encoding does not have, must not hinder numbers.
-            file = Lines(io.BufferedReader(raw, SNIFFED_BYTES), encoding=self.encoding, errors="replace")
-            file.bytes = raw
+            file = io.TextIOWrapper(io.BufferedReader(raw, SNIFFED_BYTES), encoding=self.encoding, errors="replace")
             for _ in itertools.islice(file, skip):
                 continue
             yield file
@@ -98,6 +93,12 @@ class Bytes(io.RawIOBase):
         mark = b"\n" if self.feeds else b"\r"
         below = self.tail[len(self.tail.rstrip(b" \t\r\n\f\v\0\x1a")) :]
         return (self.feeds or self.returns) + 1 - below.count(mark)
+
+
+def last_line(file: TextIO) -> int:
+    """`Bytes.last_line` of a file that `Source.lines` opened."""
+    # A class of our own around the text would know its bytes, but Python reads lines of such a class more slowly.
+    return cast(Bytes, cast(io.TextIOWrapper, file).buffer.raw).last_line()  # type: ignore[attr-defined]
 
 
 @contextlib.contextmanager
@@ -155,8 +156,9 @@ def encoding_of(head: bytes, where: str) -> str:
     wide = _wide(head)
     if wide is not None:
         return wide
-    odd = next((place for place, byte in enumerate(head) if byte < 32 and byte not in b"\t\n\r\f\v\x1a"), None)
-    if odd is not None:
+    strange = head.translate(None, _OF_TEXT)
+    if strange:
+        odd = head.index(strange[:1])
         before = head[:odd].decode("latin-1")
         if head[odd] == 0 and before.count("\n") > 2 and before.isascii():
             found = f"binary data: NUL bytes from line {before.count(chr(10)) + 1} on"

@@ -5,13 +5,19 @@ It gives up (returns None) at anything else, and `by_cell` reads the file again.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Iterator
+from typing import TextIO
 
 import numpy as np
 
 from .cells import MISSING, NUMBER, split
 from .layout import Layout
 from .numbers import LONG, Cells, judged
+from .opening import last_line
+
+CHUNK = 2**18
+"""Characters read at once."""
 
 
 def read_plain(layout: Layout, decimal: str | None) -> tuple[np.ndarray, str, np.ndarray | None] | None:
@@ -41,10 +47,10 @@ def read_plain(layout: Layout, decimal: str | None) -> tuple[np.ndarray, str, np
     if (layout.quoted and comma) or any(map(LONG.fullmatch, split(layout.sample[0], layout.separator))):
         return None
     try:
-        _load(_pointed(layout.sample, comma), layout)
+        _load(map(_pointed, layout.sample) if comma else layout.sample, layout)
         with layout.source.lines(layout.first_line - 1) as file:
-            values = _load(_pointed(file, comma), layout)
-            consecutive = file.bytes.last_line() == layout.first_line + len(values) - 1
+            values = _load(itertools.chain.from_iterable(_lines(file, comma)), layout)
+            consecutive = last_line(file) == layout.first_line + len(values) - 1
     except ValueError:
         return None
     if values.shape[1] != len(layout.names):
@@ -56,9 +62,20 @@ def _load(lines: Iterable[str], layout: Layout) -> np.ndarray:
     return np.loadtxt(lines, delimiter=layout.separator, comments="#", ndmin=2, quotechar='"' if layout.quoted else None)
 
 
-def _pointed(lines: Iterable[str], comma: bool) -> Iterable[str]:
-    """Lines with decimal points. A point in a file of decimal commas may mark thousands: it is made unreadable here."""
-    return (line.replace(".", "_").replace(",", ".") for line in lines) if comma else lines
+def _pointed(text: str) -> str:
+    """Text with decimal points. A point in a file of decimal commas may mark thousands: it is made unreadable here."""
+    return text.replace(".", "_").replace(",", ".")
+
+
+def _lines(file: TextIO, comma: bool) -> Iterator[list[str]]:
+    """The lines of a file, many at once: that is faster than one by one."""
+    rest = ""
+    while chunk := file.read(CHUNK):
+        lines = (rest + (_pointed(chunk) if comma else chunk)).split("\n")
+        rest = lines.pop()
+        yield lines
+    if rest:
+        yield [rest]
 
 
 def _is_decimal_comma(layout: Layout, decimal: str | None) -> bool:

@@ -14,6 +14,9 @@ from .opening import open_text
 from .plain import read_plain
 from .turned import lies_on_its_side, read_turned
 
+X_OF_LABVIEW = "X_Value"
+"""The first column of LabVIEW's files; where X_Columns is No it is empty, and Delta_X above the table says what it would hold."""
+
 
 def read_text(path: Path, skip: int = 0, decimal: str | None = None) -> Table:
     """The columns of a text table.
@@ -64,6 +67,9 @@ def read_text(path: Path, skip: int = 0, decimal: str | None = None) -> Table:
         notes += more + also
         if np.array_equal(lines, np.arange(layout.first_line, layout.first_line + lines.size)):
             lines = None
+    if layout.names[0] == X_OF_LABVIEW and layout.rate_hz and columns[0].dtype.kind == "f" and np.isnan(columns[0]).all():
+        columns[0] = np.arange(columns[0].size) / layout.rate_hz
+        notes.append(f"the empty column {X_OF_LABVIEW} is filled with times at the rate that the file states")
     return Table(
         columns=tuple(map(Column, layout.names, columns, units)),
         format="csv",

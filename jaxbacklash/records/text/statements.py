@@ -17,10 +17,9 @@ _STEP = (
     r"interval|ts|t_s|tsample|ipo)"
 )
 _UNIT = r"[\[(]?\s*(k|M|G|m|u|µ|μ|n)?(Hz|hz|HZ|S/s|Sa/s|SPS|sps|Hertz|hertz|samples/s|1/s|fps|sec(?:onds?)?|s|S)?\s*[\])]?"
-_STATED = re.compile(
+_STATED = (
     rf"^(?:[^\w]*)(?:(?P<rate>{_RATE})|(?P<step>{_STEP}))\s*(?P<key>[\[(][^\])]*[\])])?\s*[:=,;\t |]+\s*\"?"
-    rf"(?P<value>[-+]?\d*[.,]?\d+(?:[eE][-+]?\d+)?)\"?\s*[,;\t]?\s*\"?(?P<unit>{_UNIT})\"?(?=$|[\s,;\t\"])",
-    re.IGNORECASE,
+    rf"(?P<value>[-+]?\d*[.,]?\d+(?:[eE][-+]?\d+)?)\"?\s*[,;\t]?\s*\"?(?P<unit>{_UNIT})\"?(?=$|[\s,;\t\"])"
 )
 _FACTORS = {"k": 1e3, "M": 1e6, "G": 1e9, "m": 1e-3, "u": 1e-6, "µ": 1e-6, "μ": 1e-6, "n": 1e-9}
 
@@ -62,7 +61,7 @@ def stated_rate(lines: Iterable[str]) -> tuple[float | None, str]:
 
 def _of_line(line: str) -> float | None:
     """The rate [Hz] that one line states."""
-    found = _STATED.match(line.strip())
+    found = re.match(_STATED, line.strip(), re.IGNORECASE)
     if found is None:
         return None
     value = float(found["value"].replace(",", "."))
