@@ -187,3 +187,12 @@ def test_a_remedy_goes_into_options_and_into_the_command():
     assert with_remedy(words, "--columns t=Time,x=Base --resample --unwrap x") == [
         "fit", "a b.csv", "--unwrap", "z", "--columns", "t=Time,x=Base", "--resample", "--unwrap", "x",
     ]  # fmt: skip
+
+
+def test_counts_that_were_scaled_are_unwrapped_by_a_whole_counter():
+    count = 2.0 * np.pi / 2**18
+    counted = np.round((X + 0.001) / count) % 2**12
+    source = table(Column("t", T), Column("x", counted), Column("z", Z))
+    record, _ = read(source, scales={"x": count}, unwrap=frozenset("x"))
+    miss = record.channels["x"] - X
+    assert np.ptp(miss) < 1.01 * count

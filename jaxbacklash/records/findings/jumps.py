@@ -18,6 +18,8 @@ KNOWN, UNKNOWN = 4.0, 20.0
 """Times the steps beside it that a jump is at least, of a known turn, whose size is evidence in itself, and of another."""
 MATCH = 2e-3
 """Share of a turn by which a jump, less the motion around it, may miss it: noise and what the motion curves by."""
+WHOLE = 1e-3
+"""Counts by which a scaled position may miss whole ones: the digits of a scale of six digits over a thousand counts."""
 AGAIN = 3
 """Jumps of one size, which is the whole range of the channel, that make it a turn though it is no known one."""
 SHIFT = 20.0
@@ -65,8 +67,8 @@ def turn_of(values: np.ndarray, known: bool = False) -> tuple[float, np.ndarray]
     sizes = np.abs(steps[rows] - (before + after) / 2)
     beside = np.maximum(np.abs(before), np.abs(after))
     turns = list(TURNS)
-    if np.array_equal(values[:4096], np.round(values[:4096])):
-        turns += [2.0**bits for bits in COUNTS]
+    count = _count(values[:4096])
+    turns += [count * 2.0**bits for bits in COUNTS if count]
     clear = sizes > KNOWN * beside
     for turn in turns:
         fits = clear & (np.abs(sizes - turn) < MATCH * turn + np.abs(after - before))
@@ -81,6 +83,15 @@ def turn_of(values: np.ndarray, known: bool = False) -> tuple[float, np.ndarray]
     # Moving on before and after, the other way than it jumps: not the steps of a base that rests between them.
     onward = np.sign(before + after) == -np.sign(steps[rows])
     return (turn, rows[same]) if np.count_nonzero(same & onward) >= AGAIN and same.all() else None
+
+
+def _count(values: np.ndarray) -> float:
+    """The size of one count of a position that was measured in whole counts and perhaps scaled since; 0 where it was not."""
+    if np.array_equal(values, np.round(values)):
+        return 1.0
+    one = quantum(values)
+    counts = values / one if one else values
+    return one if one and np.abs(counts - np.round(counts)).max() < WHOLE else 0.0
 
 
 def shifts_of(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
