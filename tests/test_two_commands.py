@@ -28,7 +28,8 @@ def labview(path):
         "LabVIEW Measurement\t", "Writer_Version\t2", "Reader_Version\t2", "Separator\tTab", "Decimal_Separator\t.",
         "Multi_Headings\tNo", "X_Columns\tOne", "Time_Pref\tRelative", "Date\t2025/03/05", "Time\t10:03:29.5",
         "***End_of_Header***\t", "", "Channels\t2\t\t", f"Samples\t{T.size}\t{T.size}\t", "Y_Unit_Label\tdeg\tdeg\t",
-        "X_Dimension\tTime\tTime\t", "X0\t0.0\t0.0\t", f"Delta_X\t{T[1] - T[0]:g}\t{T[1] - T[0]:g}\t", "***End_of_Header***\t\t\t",
+        "X_Dimension\tTime\tTime\t", "X0\t0.0\t0.0\t",
+        f"Delta_X\t{T[1] - T[0]:g}\t{T[1] - T[0]:g}\t", "***End_of_Header***\t\t\t",
     ]  # fmt: skip
     rows = [f"{t:.6f}\t{x:.6f}\t{z:.6f}\t" for t, x, z in zip(T, np.degrees(X), np.degrees(Z))]
     path.write_text(PAGE([*head, "X_Value\tBase\tRelative\tComment", *rows]) + "\n")
@@ -43,7 +44,8 @@ def simulink(path):
 def controller(path):
     """A robot controller's log: semicolons, decimal commas, milliseconds, degrees in a row of units, a footer."""
     rows = [
-        f"{1e3 * t:.1f};{x:.6f};{y:.6f};0".replace(".", ",") for t, x, y in zip(T, np.degrees(X), np.degrees(X + Z))
+        f"{1e3 * t:.1f};{x:.6f};{y:.6f};0".replace(".", ",")
+        for t, x, y in zip(T, np.degrees(X), np.degrees(X + Z))
     ]
     head = ["Controller KX-4;Trace 17", "Program;BACKLASH_TEST", "Zeit;Motor_A1;Abtrieb_A1;Status", "ms;deg;deg;-"]
     path.write_text(PAGE([*head, *rows, "Ende der Aufzeichnung"]) + "\n", encoding="cp1252")
