@@ -49,21 +49,23 @@ def text(found: Description) -> str:
     rate = f", {found.rate_hz:.6g} Hz" if found.rate_hz else ""
     lines = [f"{found.path}: {table.format}, {table.rows} rows, {len(table.columns)} columns{rate}"]
     lines += [f"  {name}: {value}" for name, value in table.details.items()]
-    lines += ["", *(line for column in found.columns for line in _column(column))]
+    lines += ["", *(line for column in found.columns for line in _column(column, said=found.questions))]
     if found.notes:
         lines += ["", "noted", *(f"  {note}" for note in found.notes)]
     if found.questions:
-        lines += ["", "to be settled (the command below takes the proposals)", *(f"  {question}" for question in found.questions)]
+        answered = " (the command below takes what is proposed)" if found.record is not None else ""
+        lines += ["", f"to be settled{answered}", *(f"  {question}" for question in found.questions)]
     kind = {
         "base_motion": "a record of base motion", "force": "a force-driven record", "free_decay": "a free decay",
         "transmitted": "base motion with the transmitted force", "series": "a series of one channel",
     }.get(found.kind or "", "no record that can be fitted as it stands")  # fmt: skip
-    lines += ["", f"it seems to be {kind}", f"next: {found.command}" if found.command else ""]
+    ready = found.record is not None or found.kind == "series"
+    lines += ["", f"it seems to be {kind}", f"{'next' if ready else 'once that is settled'}: {found.command}" if found.command else ""]
     return "\n".join(lines).rstrip()
 
 
-def _column(column: ColumnFacts) -> list[str]:
-    """A line of facts, a picture, and what was found."""
+def _column(column: ColumnFacts, said: tuple[str, ...]) -> list[str]:
+    """A line of facts, a picture, and what was found that is not ``said`` below."""
     role = f"-> {column.role}" if column.role else ""
     unit = f" [{column.unit}]" if column.unit else ""
     span = "" if column.low is None else f"{column.low:.6g} ... {column.high:.6g}{unit}"
@@ -73,7 +75,7 @@ def _column(column: ColumnFacts) -> list[str]:
     picture = spark(column.column.values)
     if picture:
         lines.append(f"{'':<31}{picture}")
-    return lines + [f"{'':<31}{sentence}" for sentence in column.findings]
+    return lines + [f"{'':<31}{sentence}" for sentence in column.findings if sentence not in said]
 
 
 def spark(values: np.ndarray, width: int = WIDTH) -> str:
