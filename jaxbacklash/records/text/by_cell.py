@@ -55,12 +55,15 @@ def read_cells(layout: Layout) -> tuple[list[Sequence[str]], np.ndarray, list[st
     kept = _without_repeats(kept, rows, lines, layout, notes)
     kept = _without_footer(kept, rows, lines, layout, notes)
     width = len(layout.names)
+    blank = set()
     for row in [row for row in kept if len(rows[row]) != width]:
         rows[row] = _mended(rows[row], lines[row], layout)
-        if len(rows[row]) != width:
-            _refuse_line(
-                f"{where} line {row + first}", rows[row], layout.names, row == len(lines) - 1 and not lines[row].endswith("\n")
-            )
+        if not any(cell.strip() for cell in rows[row]):
+            blank.add(row)
+        elif len(rows[row]) != width:
+            cut = row == len(lines) - 1 and not lines[row].endswith("\n")
+            _refuse_line(f"{where} line {row + first}", rows[row], layout.names, cut)
+    kept = [row for row in kept if row not in blank] if blank else kept
     columns: list[Sequence[str]] = list(zip(*(rows[row] for row in kept), strict=True))
     return columns, np.array(kept, dtype=np.int64) + first, notes
 

@@ -83,7 +83,8 @@ def split(line: str, separator: str | None) -> list[str]:
 
 def unframed(line: str) -> str:
     """A line between bars without the bars at its ends."""
-    return line.strip().removeprefix("|").removesuffix("|")
+    bare = line.strip()
+    return bare[1:].removesuffix("|") if bare.startswith("|") else line
 
 
 def spread(cells: list[str], width: int) -> list[str]:

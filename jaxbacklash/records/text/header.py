@@ -43,12 +43,15 @@ def find_names(head: Head, run: Run, where: str) -> Names:
     BadInput
         Where there are more or fewer names than values.
     """
-    rows = _rows_above(head, run)
-    if not rows:
-        rows = _commented(head, run)
-    if not rows:
-        return _unnamed(head, run, where)
     width, filled = run.width, len(run.kinds.rstrip(MISSING))
+    rows, commented = _rows_above(head, run), _commented(head, run)
+    if commented and not (rows and filled <= len(_trimmed(rows[0][1])) <= width):
+        # Words further up that do not fit are a preamble.
+        rows = commented
+    elif commented and len(rows) == 1 and _all_units(commented[0][1], filled) and commented[0][0] > rows[0][0]:
+        rows = [commented[0], *rows]
+    if not rows:
+        return _unnamed(head, run)
     units = [""] * width
     notes: list[str] = []
     used = [rows[0]]
@@ -76,6 +79,11 @@ def find_names(head: Head, run: Run, where: str) -> Names:
     first = min(row for row, _ in used)
     texts = tuple(head.lines[row].text.strip(" \t\r\n\ufeff") for row, _ in used)
     return Names(names, stated, first, head.lines[index].number, texts, tuple(notes), rate)
+
+
+def _trimmed(cells: list[str]) -> list[str]:
+    """Cells without empty ones at the end."""
+    return cells if not cells or cells[-1] else _trimmed(cells[:-1])
 
 
 def _rows_above(head: Head, run: Run) -> list[tuple[int, list[str]]]:
@@ -141,7 +149,11 @@ def _commented_cells(head: Head, index: int, run: Run) -> list[str] | None:
     bare = bare_comment(text)
     for separator in (run.separator, *SEPARATORS):
         cells = split(bare.strip(" ") if separator else bare, separator)
-        if len(cells) == run.width and all(kind(cell) in (WORD, MISSING) for cell in cells) and any(cells):
+        if (
+            len(run.kinds.rstrip(MISSING)) <= len(cells) <= run.width
+            and all(kind(cell) in (WORD, MISSING) for cell in cells)
+            and any(cells)
+        ):
             return cells
     return None
 
@@ -200,7 +212,7 @@ def _filled(cells: list[str]) -> list[str]:
     return filled
 
 
-def _unnamed(head: Head, run: Run, where: str) -> Names:
+def _unnamed(head: Head, run: Run) -> Names:
     """Names by number where the file has none."""
     width = len(run.kinds.rstrip(MISSING))
     cells = head.cells(run.first, run.separator)
