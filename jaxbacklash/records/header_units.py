@@ -31,7 +31,7 @@ UNMISTAKABLE = frozenset(_CLEAR.split())
 """Units that a name such as "Pos_deg" may end with after an underscore. Single letters and "in", "min", "rev" are left out:
 theta_m is a motor's angle, x_in an input, z_min a least value, x_rev a reversed one."""
 
-RATES = re.compile(r"(.*?)_(rad|deg|m|mm|rev|turns|revs|counts)_?(?:per|p)?_?(s|sec|min|s2|s_2|s\^2)2?")
+RATES = re.compile(r"(.+?)_(m?rad|m?deg|m?m|rev|turns|counts)(?:_per_|_|per|p)(s|sec|min)(_?\^?2)?")
 """Names such as "speed_rad_s": a velocity or an acceleration, whose last letters are no seconds."""
 
 _SMALL = {symbol.lower() for symbol in SYMBOLS if len(symbol) > 1}
@@ -107,6 +107,7 @@ def split_unit(name: str) -> tuple[str, str]:
     if found and not re.fullmatch(r"[-\d.,:\s]*", found[2]):
         return found[1], found[2]
     for pattern in (
+        r"(.+?)\s*/\s*[(]\s*(.+?)\s*[)]",
         r"(.*?)[\s_]*[(]\s*(.+?)\s*[)]",
         r"(.*?)\s*[{<]\s*(.+?)\s*[}>]",
         r"(.+?)\s*[,;:]\s*(.+)",
@@ -124,8 +125,8 @@ def split_unit(name: str) -> tuple[str, str]:
     if slash and bare.strip() and not is_unit(name) and is_unit(unit.strip()):
         return bare.strip(), unit.strip().strip("()")
     rate = RATES.fullmatch(name)
-    if rate and rate[1]:
-        return rate[1], f"{rate[2]}/{rate[3].replace('_', '^')}" + ("^2" if name.endswith("s2") and rate[3] == "s" else "")
+    if rate:
+        return rate[1], f"{rate[2]}/{rate[3]}" + ("^2" if rate[4] else "")
     bare, underscore, unit = name.rpartition("_")
     if underscore and bare and (unit in UNMISTAKABLE or (unit == "s" and _TIMES.fullmatch(bare))):
         return bare, unit
