@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import tomllib
 from dataclasses import fields
 from pathlib import Path
@@ -16,6 +18,10 @@ from .parameters import specs, unit_text
 from .system import System
 
 OBSERVED = ("z", "y", "T")
+MOST = 1e15
+"""No value of a model is larger in size: beyond it nothing of ordinary size is left beside it in double precision."""
+LARGEST = 50_000_000
+"""Bytes of a model file at most; a learned torque of a fine table takes some."""
 
 
 def dump_model(system: System, *, translational: bool = False, per_inertia: bool = False, heading: str = "") -> str:
@@ -23,10 +29,10 @@ def dump_model(system: System, *, translational: bool = False, per_inertia: bool
 
     def entry(name: str, value: Any, unit: str) -> str:
         text = unit_text(unit, translational=translational, per_inertia=per_inertia)
-        return f"{name} = {_number(value)}  # {text}"
+        return f"{_key(name)} = {_number(value)}  # {_shown(text)}"
 
-    lines = [f"# {line}" for line in heading.splitlines()]
-    lines += ["[model]", f'observed = "{system.observed}"']
+    lines = [f"# {_shown(line)}" for line in heading.splitlines()]
+    lines += ["[model]", f"observed = {_quoted(system.observed)}"]
     described = specs(system)
     lines.append(entry("inertia", system.inertia, described["inertia"].unit))
     for part in (system.contact, system.damper):
@@ -34,10 +40,10 @@ def dump_model(system: System, *, translational: bool = False, per_inertia: bool
             lines += [entry(f.name, getattr(part, f.name), f.metadata["spec"].unit) for f in fields(part)]
     for name in sorted(system.effects):
         effect = system.effects[name]
-        lines += ["", f"[effects.{name}]"]
+        lines += ["", f"[effects.{_key(name)}]"]
         for f in fields(effect):
             value, spec = getattr(effect, f.name), f.metadata.get("spec")
-            lines.append(f"{f.name} = {_literal(value)}" if spec is None else entry(f.name, value, spec.unit))
+            lines.append(f"{_key(f.name)} = {_literal(value)}" if spec is None else entry(f.name, value, spec.unit))
     return "\n".join(lines) + "\n"
 
 
@@ -49,15 +55,23 @@ def load_model(path: str | Path) -> System:
     BadInput
         A file that is missing or not TOML, an unknown or missing entry, a value that is no number or out of bounds.
     """
-    where = str(path)
+    where = _shown(str(path))
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        if Path(path).is_dir():
+            raise BadInput(f"{where}: is a folder, wanted a model file (TOML)")
+        if (size := Path(path).stat().st_size) > LARGEST:
+            raise BadInput(f"{where}: has {size} bytes, wanted a model file (TOML) of at most {LARGEST}")
+        text = Path(path).read_text(encoding="utf-8-sig")
         data = tomllib.loads(text)
     except FileNotFoundError:
         raise BadInput(f"{where}: no such file, wanted a model file (TOML)") from None
     except (OSError, UnicodeDecodeError) as error:
         raise BadInput(f"{where}: cannot be read as text ({type(error).__name__}), wanted a model file (TOML)") from None
-    except tomllib.TOMLDecodeError as error:
+    except RecursionError:
+        raise BadInput(f"{where}: holds lists or tables nested too deep, wanted TOML with a [model] table") from None
+    except ValueError as error:  # among them a number of thousands of digits
+        if isinstance(error, BadInput):
+            raise
         raise BadInput(f"{where}: not a model file: {str(error).splitlines()[0]}, wanted TOML with a [model] table") from None
     return _build(data, where)
 
@@ -84,9 +98,10 @@ def _build(data: dict[str, Any], where: str) -> System:
         if name in numbers and numbers[name] <= 0.0:
             raise BadInput(f"{where}: [model] {name} is {numbers[name]:g}, wanted a positive number")
     contact: Contact | Spring | None = None
+    for name, what in (("backlash", "the total play"), ("damping", "a damping"), ("width", "a length")):
+        if numbers.get(name, 0.0) < 0.0:
+            raise BadInput(f"{where}: [model] {name} is {numbers[name]:g}, wanted {what}, zero or more")
     if "backlash" in numbers:
-        if numbers["backlash"] < 0.0:
-            raise BadInput(f"{where}: [model] backlash is {numbers['backlash']:g}, wanted the total play, zero or more")
         contact = Contact(numbers["backlash"], numbers["stiffness"], numbers.get("width", 0.0))
     elif "stiffness" in numbers:
         contact = Spring(numbers["stiffness"])
@@ -107,6 +122,9 @@ def _effect(name: str, entries: Any, where: str) -> AbstractEffect:
     unknown = sorted(set(entries) - set(described) - set(settings))
     if unknown:
         raise BadInput(f"{where}: [effects.{name}] has an entry {unknown[0]}, wanted {', '.join([*described, *settings])}")
+    missing = [key for key, field in described.items() if key not in entries and not field.metadata["spec"].fixed]
+    if missing:
+        raise BadInput(f"{where}: [effects.{name}] lacks {missing[0]}, wanted {', '.join(described)}")
     numbers = {key: _value(value, f"{where}: [effects.{name}] {key}") for key, value in entries.items() if key in described}
     others = {key: _setting(value, f"{where}: [effects.{name}] {key}") for key, value in entries.items() if key in settings}
     try:
@@ -114,8 +132,9 @@ def _effect(name: str, entries: Any, where: str) -> AbstractEffect:
     except ValueError as error:
         raise BadInput(f"{where}: [effects.{name}]: {error}") from None
     except TypeError:
-        missing = sorted(set(described) - set(entries))
-        raise BadInput(f"{where}: [effects.{name}] lacks {missing[0]}, wanted {', '.join(described)}") from None
+        lacking = sorted((set(described) | set(settings)) - set(entries))
+        raise BadInput(f"{where}: [effects.{name}] lacks {lacking[0] if lacking else 'an entry'}, wanted "
+                       f"{', '.join([*described, *settings])}") from None  # fmt: skip
     for key, value in numbers.items():
         spec = described[key].metadata["spec"]
         if not spec.lower <= value <= spec.upper:
@@ -125,9 +144,15 @@ def _effect(name: str, entries: Any, where: str) -> AbstractEffect:
 
 
 def _value(value: Any, where: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
-        raise BadInput(f"{where} is {value!r}, wanted a finite number")
+    if isinstance(value, bool) or not isinstance(value, int | float) or (isinstance(value, float) and not np.isfinite(value)):
+        raise BadInput(f"{where} is {_cut(repr(value))}, wanted a finite number")
+    if not abs(value) <= MOST:
+        raise BadInput(f"{where} is {_cut(str(value))}, wanted a number of at most {MOST:g} in size")
     return float(value)
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= 40 else f"{text[:30]}... ({len(text)} characters)"
 
 
 def _setting(value: Any, where: str) -> Any:
@@ -140,7 +165,24 @@ def _setting(value: Any, where: str) -> Any:
 def _literal(value: Any) -> str:
     if isinstance(value, tuple):
         return "[" + ", ".join(_literal(part) for part in value) + "]"
-    return f'"{value}"' if isinstance(value, str) else _number(value)
+    return _quoted(value) if isinstance(value, str) else _number(value)
+
+
+def _key(name: str) -> str:
+    """A name as TOML takes it: bare where it is of ASCII letters, digits, - and _."""
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else _quoted(name)
+
+
+def _quoted(text: str) -> str:
+    """A TOML string: as JSON writes it, half characters of file names as escapes, DEL escaped too."""
+    whole = text.encode("utf-8", "backslashreplace").decode("utf-8")
+    return json.dumps(whole, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _shown(text: str) -> str:
+    """Text for a comment or a sentence: what TOML allows in no comment, and half characters, as escapes."""
+    whole = text.encode("utf-8", "backslashreplace").decode("utf-8")
+    return "".join(c if c.isprintable() or c == "\t" else c.encode("unicode_escape").decode("ascii") for c in whole)
 
 
 def _number(value: Any) -> str:

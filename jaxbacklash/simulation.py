@@ -22,6 +22,10 @@ from .system import System
 
 Array = Any
 
+LONG = 60_000
+"""Panels of a run from which on it is computed in pieces."""
+PIECE = 8192
+"""Panels in such a piece."""
 MOST_FINER = 16
 """A play is followed by panels so many times shorter than usual, and no more: a tiny one is hardly felt."""
 
@@ -112,10 +116,10 @@ def simulate(
         times, states = _adaptive(args, state, jnp.asarray(1.0 / rate), samples, rtol, atol)
     else:
         every = panels_per_sample or default_panels(system, rate)
-        times, states = _fixed(args, state, jnp.asarray(1.0 / rate), samples - 1, every, system.switches)
+        times, states = _in_pieces(args, state, jnp.asarray(1.0 / rate), samples - 1, every, system.switches)
         finer = every if panels_per_sample else crossing_panels(system, drive, times, states, rate, every)
         if finer > every:
-            times, states = _fixed(args, state, jnp.asarray(1.0 / rate), samples - 1, finer, system.switches)
+            times, states = _in_pieces(args, state, jnp.asarray(1.0 / rate), samples - 1, finer, system.switches)
     at = jax.vmap(drive.at)(times)
     observed = jax.vmap(system.output)(times, states, at)
     return Trajectory(times, states, at, observed)
@@ -140,6 +144,21 @@ def crossing_panels(system: System, drive: AbstractExcitation, times: Array, sta
     if not (float(play) > 0.0 and fastest > 0.0):
         return every
     return int(min(max(every, np.ceil(fastest / (rate * float(play)))), MOST_FINER * every))
+
+
+def _in_pieces(args: Driven, state: Any, dt: Any, intervals: int, every: int, located: bool) -> Any:
+    """`_fixed`, a long run one piece after the other: what a step costs grows with the length of the run that it is in."""
+    if intervals * every <= LONG or any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree.leaves((args, state))):
+        return _fixed(args, state, dt, intervals, every, located)
+    piece, parts = max(1, PIECE // every), []
+    for first in range(0, intervals, piece):  # the last one runs on beyond the end: all are the same program
+        here = Driven(args.system, args.excitation, args.t0 + dt * first)
+        edges = [np.asarray(edge) for edge in _fixed(here, state, dt, piece, every, located)[1]]
+        state = tuple(jnp.asarray(edge[-1]) for edge in edges)
+        parts.append([edge[:-1] for edge in edges])
+    ends = [np.asarray(edge)[-1:] for edge in edges]
+    whole = tuple(np.concatenate([*column, end])[: intervals + 1] for column, end in zip(zip(*parts), ends))
+    return args.t0 + dt * jnp.arange(intervals + 1), tuple(jnp.asarray(column) for column in whole)
 
 
 @eqx.filter_jit

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import sys
 import time
 from collections.abc import Iterator
@@ -12,7 +13,7 @@ from pathlib import Path
 from threading import Thread
 from typing import Any
 
-from ..errors import BadInput
+from ..errors import BadInput, NoAnswer
 from ..model_file import load_model
 from ..system import System
 from ..whole_file import write_whole
@@ -41,8 +42,18 @@ def check_window(window: float | None) -> None:
 
 
 def names(text: str | None) -> list[str]:
-    """A comma-separated list of names."""
-    return [part.strip() for part in (text or "").split(",") if part.strip()]
+    """A comma-separated list of names.
+
+    Raises
+    ------
+    BadInput
+        One is given twice.
+    """
+    found = [part.strip() for part in (text or "").split(",") if part.strip()]
+    for name in found:
+        if found.count(name) > 1:
+            raise BadInput(f"--effects {name}: given twice, wanted each effect once")
+    return found
 
 
 def out_folder(path: Path | None) -> Path | None:
@@ -73,8 +84,27 @@ def write_text(path: Path, text: str) -> None:
 
 
 def json_text(result: dict[str, Any]) -> str:
-    """The machine-readable result; a number that is not finite would be an error of ours, so it is refused."""
-    return json.dumps(result, indent=2, allow_nan=False) + "\n"
+    """The machine-readable result.
+
+    Raises
+    ------
+    NoAnswer
+        A number in it is not finite.
+    """
+    try:
+        return json.dumps(result, indent=2, allow_nan=False) + "\n"
+    except ValueError:
+        place = next(_not_finite(result, ""), "one of its numbers")
+        raise NoAnswer(f"the result is not finite in {place}; check units and scales of the record and the model") from None
+
+
+def _not_finite(part: Any, place: str) -> Iterator[str]:
+    """Where numbers are not finite, as in ``stages.0.rms``."""
+    inside = part.items() if isinstance(part, dict) else enumerate(part) if isinstance(part, list | tuple) else ()
+    for name, one in inside:
+        yield from _not_finite(one, f"{place}.{name}".lstrip("."))
+    if isinstance(part, float) and not math.isfinite(part):
+        yield place
 
 
 class Progress:

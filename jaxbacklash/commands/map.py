@@ -22,8 +22,16 @@ from ..dynamics.tiles import need_zarr
 from ..errors import BadInput
 from ..whole_file import write_whole
 from .common import json_text, progress
+from .ranges import bounded, shown
 
 MOST = 10_000_000
+"""Cells at most."""
+MOST_PERIODS = 1e10
+"""Periods that are followed in all cells together at most: hours on a few cores."""
+MOST_KEPT = 1e9
+"""Stroboscopic samples in all cells together at most: 8 GB."""
+FARTHEST = 1e6
+"""Half plays, and half plays over the unit of tau, from which a motion may start."""
 DEFAULTS = {"inverse_alpha": "1:5:256", "zeta": "0.005:0.03:64"}
 
 
@@ -106,8 +114,10 @@ def read_request(
     cells = int(np.prod([values.size for values in axes.values()]))
     if cells > MOST:
         raise BadInput(f"map: {cells} cells, wanted at most {MOST}")
-    family = PaperCase(case, **{name: float(values[0]) for name, values in fixed.items()})
     kept = min(32, max(1, periods - skip)) if samples is None else samples
+    bounded("map", cells * periods, MOST_PERIODS, "periods to follow in all cells together", "take fewer cells or --periods")
+    bounded("map", cells * kept, MOST_KEPT, "samples to keep in all cells together", "take fewer cells or --samples")
+    family = PaperCase(case, **{name: float(values[0]) for name, values in fixed.items()})
     return request(family, axes, periods=periods, skip=skip, samples=kept, start=read_start(start))
 
 
@@ -120,6 +130,8 @@ def read_range(option: str, text: str) -> np.ndarray:
         count = int(parts[2]) if len(parts) == 3 else 1
     except ValueError:
         raise BadInput(f"{option} {text}: {wanted}") from None
+    if count > MOST:
+        raise BadInput(f"{option} {text[:60]}: {shown(count)} values, wanted at most {MOST}")
     if len(parts) not in (1, 3) or count < 1 or not all(0.0 < n < np.inf for n in numbers):
         raise BadInput(f"{option} {text}: {wanted}")
     return np.linspace(numbers[0], numbers[-1], count)
@@ -131,8 +143,8 @@ def read_start(text: str) -> tuple[float, float]:
         p, v = (float(part) for part in text.split(","))
     except ValueError:
         raise BadInput(f"--start {text}: wanted position and speed, two numbers with a comma between") from None
-    if not np.isfinite([p, v]).all():
-        raise BadInput(f"--start {text}: wanted finite numbers")
+    if not (abs(p) <= FARTHEST and abs(v) <= FARTHEST):
+        raise BadInput(f"--start {text[:60]}: wanted numbers from {-FARTHEST:g} to {FARTHEST:g}")
     return p, v
 
 

@@ -9,13 +9,16 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadInput, NoAnswer
-from ..excitation import AbstractExcitation, Chirp, Harmonic, Multisine, Rest, SteppedSine
+from ..excitation import AbstractExcitation, Chirp, Harmonic, Multisine, Rest, Sampled, SteppedSine
 from ..model_file import load_model
 from ..records import read_record, write_record
+from ..records.checks import MIN_SAMPLES, MIN_SECONDS
 from ..records.writer import WRITERS
-from ..simulation import as_record, measured_base
+from ..simulation import as_record, default_panels, measured_base
 from ..simulation import simulate as run_system
+from ..system import System
 from .common import json_text
+from .ranges import bounded
 
 WANTED = {
     "harmonic": ("amplitude", "frequency"),
@@ -24,6 +27,18 @@ WANTED = {
     "stepped": ("amplitude", "low", "high", "steps"),
     "rest": (),
 }
+ENTRIES = {
+    "amplitude": (-1e9, 1e9), "frequency": (0.0, 1e6), "f0": (0.0, 1e6), "f1": (0.0, 1e6), "phase": (-1e6, 1e6),
+    "corner": (1e-6, 1e12), "low": (0.0, 1e6), "high": (0.0, 1e6), "lines": (1, 10_000), "steps": (2, 1000),
+}  # fmt: skip
+"""The range of each entry: rad or N m, Hz, rad, and numbers of lines and steps."""
+MOST_SAMPLES = 2_000_000
+MOST_STEPS = 2_000_000
+"""Steps of a simulation at most: about a minute."""
+MOST_SINES = 2e9
+"""Values of single sines that a multisine or stepped sine may ask for at most, likewise."""
+LARGEST = 1e12
+"""A motion beyond this [rad] has grown without bound."""
 OPTIONAL = {"chirp": {"corner": 1e9}, "harmonic": {"phase": 0.0}}
 
 
@@ -42,19 +57,19 @@ def run(
     seed: int,
 ) -> None:
     """Simulate, add noise, write the record."""
-    for option, value, top in (("--duration", duration, 1e5), ("--rate", rate, 1e6)):
-        if not 0.0 < value <= top:
-            raise BadInput(f"{option} {value:g}: wanted a number above 0 and up to {top:g}")
-    if noise < 0.0:
-        raise BadInput(f"--noise {noise:g}: wanted a standard deviation, zero or more")
     if out.suffix.lower() not in WRITERS:
         raise BadInput(f"--out {out}: found the suffix {out.suffix!r}, wanted one of {', '.join(WRITERS)}")
     system = load_model(model)
     rng = np.random.default_rng(seed)
     drive, t0, duration = parse_excitation(excitation, as_force, duration, rng)
+    check_size(system, drive, duration, rate)
     path = run_system(system, drive, duration=duration, rate=rate, y0=y0, dy0=dy0, t0=t0)
-    if not np.all(np.isfinite(np.asarray(path.observed))):
-        raise NoAnswer(f"{model}: the simulated motion grows without bound; are the signs of its effects right?")
+    largest = float(np.max(np.abs(np.asarray(path.observed))))
+    if not largest <= LARGEST:
+        raise NoAnswer(
+            f"{model}: the simulated motion grows without bound; are the signs of its effects right, and is its damping "
+            f"one that steps of {1000.0 / rate:.3g} ms can follow (--rate)?"
+        )
     record = as_record(path, system, path=str(out))
     if noise:
         moved = {
@@ -69,6 +84,27 @@ def run(
         sys.stdout.write(json_text(answer | {"channels": ["t", *record.channels]}))
     else:
         print(record.summary())
+
+
+def check_size(system: System, drive: AbstractExcitation, duration: float, rate: float) -> None:
+    """Refuse what takes too long, or gives too little to be a record.
+
+    Raises
+    ------
+    BadInput
+        With the number and the bound.
+    """
+    where = f"simulate {duration:g} s at {rate:g} Hz"
+    samples = duration * rate + 1
+    if duration < MIN_SECONDS or samples < MIN_SAMPLES:
+        raise BadInput(f"{where}: gives {samples:.6g} samples, wanted {MIN_SECONDS} s and {MIN_SAMPLES} samples at least; "
+                       "raise --duration or --rate")  # fmt: skip
+    bounded(where, samples, MOST_SAMPLES, "samples", "shorten --duration or lower --rate")
+    panels = samples * default_panels(system, rate)
+    bounded(where, panels, MOST_STEPS, "steps (of 1 ms or less, 20 a period of the contact)", "shorten --duration")
+    lines = max((np.size(getattr(drive, name)) for name in drive.series if getattr(drive, name) is not None), default=1)
+    if not isinstance(drive, Sampled):
+        bounded(where, panels * lines, MOST_SINES, "values of sines", "shorten --duration or take fewer lines")
 
 
 def parse_excitation(
@@ -98,8 +134,9 @@ def parse_excitation(
             given[name] = float(value)
         except ValueError:
             raise BadInput(f"--excitation {kind}: {name} is {value!r}, wanted a number") from None
-        if not np.isfinite(given[name]):
-            raise BadInput(f"--excitation {kind}: {name} is {value}, wanted a finite number")
+        low, high = ENTRIES[name]
+        if not low <= given[name] <= high:
+            raise BadInput(f"--excitation {kind}: {name} is {value[:40]}, wanted a number from {low:g} to {high:g}")
     missing = [name for name in WANTED[kind] if name not in given]
     if missing:
         raise BadInput(f"--excitation {kind}: {missing[0]} is missing, wanted {kind}:" + ",".join(f"{n}=" for n in WANTED[kind]))

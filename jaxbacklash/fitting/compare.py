@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import BadInput
+from ..errors import BadInput, NoAnswer
 from ..parameters import channel_unit
 from ..records import Record, oriented
 from ..system import System
@@ -55,6 +55,8 @@ def compare(system: System, record: Record, *, window: float | None = None, tran
     ------
     BadInput
         The record does not hold the channel that the model observes.
+    NoAnswer
+        The model's motion grows without bound.
     """
     if record.observed_name != system.observed:
         if {record.observed_name, system.observed} == {"z", "y"}:
@@ -67,7 +69,13 @@ def compare(system: System, record: Record, *, window: float | None = None, tran
             )
     record = oriented(record)
     noise = observed_noise(record)
-    seen = predict_record(system, record, window=window)
+    with np.errstate(over="ignore", invalid="ignore"):  # a motion that grows without bound, which is told
+        seen = predict_record(system, record, window=window)
+    if not (np.isfinite(seen.rms) and np.isfinite(seen.median)):
+        raise NoAnswer(
+            f"{record.path}: within a window of {seen.length:.3g} s the model's motion grows without bound; are the signs of its "
+            "effects right, and is its damping one that this record's rate can follow?"
+        )
     factor = quieter([noise], [seen], [record])[0]
     if factor != 1.0:  # what a model predicts was no noise
         noise *= factor
