@@ -13,6 +13,7 @@ import pytest
 from jaxbacklash.errors import BadInput
 from jaxbacklash.records.formats import reader_for
 from jaxbacklash.records.formats.guard import quiet
+from jaxbacklash.records.formats.messages import Topics
 from jaxbacklash.records.table import Table
 
 from .logger_files import NAMED, RADIANS, RATE, UNITLESS, WRITERS, course, write_mdf, write_tdms, write_uff
@@ -211,6 +212,19 @@ def test_a_folder_that_ros_2_recorded(files):
     table = table_of(folder)
     (folder / f"{folder.name}.db3").replace(files / "rec.db3")
     np.testing.assert_allclose(np.degrees(table.called("x/position")[0].values), course()["x"], atol=1e-12)
+
+
+def test_topics_stamped_by_a_simulator_keep_their_digits_beside_those_of_the_wall_clock():
+    topics = Topics()
+    for row in range(100):
+        topics.add("/real", {"x": row}, 1_700_000_000_000_000_000 + row * 1_000_000)
+        stamp = {"sec": 3, "nanosec": row * 1_000_000}
+        topics.add("/simulated", {"header": {"stamp": stamp}, "x": row, "camera": [0] * 1000}, 5)
+    table = topics.table("mcap", {})
+    for column in table.columns:
+        np.testing.assert_allclose(column.clock, np.arange(100) / 1000, rtol=0, atol=1e-12)
+    assert "1000 elements" in table.left_out["simulated/camera"]
+    assert "simulated: as stamped" in table.details["times"]
 
 
 def test_universal_files_uneven_single_spectra_and_cut(tmp_path):

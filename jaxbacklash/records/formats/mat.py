@@ -13,9 +13,9 @@ import numpy as np
 
 from ..checks import wrong
 from ..table import Table
+from . import mat5, mat73
 from .arrays import MAX_CHANNELS, Columns, named_matrix, tidy
 from .guard import guarded
-from .mat5 import OPAQUE_NAME
 from .mat_objects import with_objects
 from .mat_tree import MAX_DEPTH, Instance, Measured, Tree, Unread
 
@@ -47,11 +47,8 @@ def read(path: Path) -> Table:
     # MATLAB puts its own text before the HDF5 part; other programs often do not.
     newer = head.startswith(HDF5_SIGNATURE) or head.endswith(HDF5_SIGNATURE)
     with guarded(path, "a file that is damaged or no MATLAB file", "a .mat file of version 5 or 7.3"):
-        if newer:
-            from .mat73 import read_tree
-        else:
-            from .mat5 import read_tree
-        tree, missing = with_objects(read_tree(path), path, newer)
+        tree = mat73.read_tree(path) if newer else mat5.read_tree(path)
+        tree, missing = with_objects(tree, path, newer)
         return _table(tree, path, "mat 7.3" if newer else "mat", missing)
 
 
@@ -139,7 +136,7 @@ def way_out(name: str, kind: str, path: Path, missing: bool = False) -> str:
     library is ``missing`` that reads such values, the library."""
     if missing and kind in ("table", "timetable", "string", "datetime", "duration", "categorical"):
         return 'mat-io to read it: pip install "jaxbacklash[io]"'
-    name = "ans" if name == OPAQUE_NAME else name
+    name = "ans" if name == mat5.OPAQUE_NAME else name
     target = f"{path.stem}.csv".replace("'", "''")
     timetable = f"writetimetable(extractTimetable({name}), '{target}')"
     lines = {

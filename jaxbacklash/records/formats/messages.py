@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from array import array
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -18,6 +19,7 @@ MAX_ELEMENTS = 64
 """A longer list within a message is a picture or a scan, not a set of channels."""
 MAX_DEPTH = 12
 NANO = 1_000_000_000
+DAY = 86_400 * NANO
 STAMP_FIELDS = ("sec", "nanosec")
 
 
@@ -92,8 +94,11 @@ class Topics:
             clocks[topic] = self.stamps[topic] if stamped else received
             if self.series[topic]:
                 sources.append(f"{topic}: {'as stamped' if stamped else 'as recorded'}")
-        first = min((min(each) for each in clocks.values()), default=0)
+        earliest = min((min(each) for each in clocks.values()), default=0)
         for topic, series in self.series.items():
+            # Simulated times begin at 0, others in 1970: clocks that far apart are not one, and floats would lose their digits.
+            own = min(clocks[topic])
+            first = earliest if own - earliest < DAY else own
             clock = np.array([time - first for time in clocks[topic]], dtype=np.float64) / NANO
             for name, values in series.items():
                 column = np.frombuffer(values, dtype=np.float64)
@@ -111,9 +116,14 @@ def _members(message: Any) -> dict[str, Any]:
     """Fields by name, of an object of JSON or of a message class."""
     if isinstance(message, Mapping):
         return {str(name): value for name, value in message.items()}
-    if not dataclasses.is_dataclass(message):
-        return {}
-    return {one.name: getattr(message, one.name) for one in dataclasses.fields(message) if not one.name.startswith("__")}
+    return {name: getattr(message, name) for name in _names(type(message))}
+
+
+@functools.cache
+def _names(kind: type) -> tuple[str, ...]:
+    """Names of the fields of a message class; none for what is no such class."""
+    fields = dataclasses.fields(kind) if dataclasses.is_dataclass(kind) else ()
+    return tuple(one.name for one in fields if not one.name.startswith("__"))
 
 
 def _stamp(message: Any) -> int:

@@ -108,7 +108,8 @@ def _sheet(sheet: Any, path: Path, decimal: str | None) -> Table | None:
         try:
             return read_text(lines, decimal=decimal)
         except BadInput as bad:
-            raise BadInput(str(bad).replace(f"{lines} line", f"{where}, row").replace(str(lines), where)) from bad
+            sentence = str(bad).replace(f"{lines} line", f"{where}, row").replace(str(lines), where)
+            raise BadInput(sentence, remedy=bad.remedy) from bad
 
 
 def _write(sheet: Any, file: TextIO, where: str) -> bool:
@@ -138,7 +139,8 @@ def _text(cell: Any) -> str:
     if isinstance(cell, bool):
         return str(int(cell))
     if isinstance(cell, float | int):
-        return repr(cell)
+        # An exponent keeps "1.234" from being read as 1234.
+        return f"{cell!r}e0" if "." in repr(cell) and "e" not in repr(cell) else repr(cell)
     if isinstance(cell, datetime.datetime):
         return cell.isoformat(timespec="microseconds")
     if isinstance(cell, datetime.timedelta):
