@@ -16,6 +16,7 @@ from ..fitting.setup import add_effects
 from ..model_file import dump_model
 from ..report.result import as_json as result_of
 from .common import check_window, json_text, model_of_file, names, out_folder, progress, write_text
+from .heldout import check_heldout
 from .reading import Reading
 
 
@@ -41,6 +42,7 @@ def run(
         raise BadInput(f"--starts {starts}: wanted one or more")
     records = [reading.record(path) for path in paths]
     held = reading.record(heldout) if heldout is not None else None
+    check_heldout(records, held)
     folder = out_folder(out)
     system = model_of_file(model, inertia)
     added = names(effects)

@@ -19,6 +19,7 @@ from ..model_file import dump_model
 from ..report.refine_result import other_methods, refinement_json
 from ..system import System
 from .common import check_window, json_text, model_of_file, out_folder, progress, write_text
+from .heldout import check_heldout
 from .reading import Reading
 
 WORTH_A_TABLE = 0.3
@@ -42,6 +43,7 @@ def run(
     check_window(window)
     record = reading.record(path)
     held = reading.record(heldout) if heldout is not None else None
+    check_heldout([record], held)
     folder = out_folder(out)
     system = _given(model, inertia)
     # What other methods say of the model that is likely kept is worked out beside the search for more.

@@ -17,6 +17,9 @@ CHANNELS = ("x", "z", "y", "F", "T")
 
 MIN_SAMPLES = 64
 MIN_SECONDS = 0.5
+LARGEST = 1e12
+"""No value in SI units is larger in size, and no motion or force smaller in range than its inverse: squares and fourth powers of
+them, which a fit needs, stay far within double precision."""
 WANTED_CHANNELS = (
     "x with z or y (base motion), F with y or z (force), x with T (transmitted force), or z or y alone (free decay)"
 )
@@ -83,6 +86,17 @@ def finite(values: np.ndarray, name: str, where: str, place: Callable[[int], str
     bridge = "; short runs are bridged with --resample" if missing and name != "t" else ""
     sentence = f"{where}, column {name}: found {found}, wanted a finite number in every row{bridge}."
     raise BadInput(sentence, remedy="--resample" if bridge else "")
+
+
+def of_computable_size(values: np.ndarray, name: str, where: str) -> None:
+    """Refuse values (N,), finite, whose size or range no measurement in SI units has and no fit can compute with."""
+    cure = "a measurement in SI units; is the unit right? convert with --unit or --scale"
+    largest = float(np.max(np.abs(values)))
+    if largest > LARGEST:
+        raise wrong(f"{where}, column {name}", f"values of up to {number(largest)} in size", f"at most {LARGEST:g}, {cure}")
+    extent = float(np.ptp(values))
+    if 0.0 < extent < 1.0 / LARGEST:
+        raise wrong(f"{where}, column {name}", f"a range of {number(extent)}", f"at least {1.0 / LARGEST:g}, {cure}")
 
 
 def same_length(values: np.ndarray, name: str, t: np.ndarray, where: str) -> None:

@@ -62,6 +62,8 @@ class Record:
             checks.finite(values, name, where)
         time_axis.increasing(t, where)
         time_axis.in_seconds(t, self.confirmed, where)
+        for name, values in {"t": t, **channels}.items():
+            checks.of_computable_size(values, name, where)
         t = time_axis.uniform(t, where)
         checks.lasts_long_enough(t, where)
         # The dataclass is frozen for its users; this is its birth.
