@@ -1,0 +1,60 @@
+"""A cause of misfit that lies in the record and not in the joint: what it is, how large, and what the fit would be without it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from ..fitting.fit import Fit
+    from ..records import Record
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Something about the record that explains a misfit.
+
+    Attributes
+    ----------
+    name : what kind of cause, in snake case: ``delay``, ``clock``, ``scale``, ``sign``, ``inertia``, ``held_samples``, ``held_start``,
+        ``step``, ``force_limit``
+    channel : the channel that it is about, empty where it is about all
+    size : how large it is, None where it has no size (a turned sign)
+    stderr : standard error of the size, None where that cannot be told
+    unit : unit of the size, ``"1"`` for a ratio
+    before, left : misfit of the model over noise as the record stands, and without the cause
+    gain : fall of the sum of squares, in units of the noise and of what is left
+    sentence : one sentence for a person, with the sizes in it
+    remedy : options to add to the command, or a command, ready to paste; empty where there is none
+    law : the canonical name of the catalogue's effect that says the same, empty where there is none
+    fit : the joint fitted to the corrected record, None where that could not be told
+    record : the corrected record
+    """
+
+    name: str
+    channel: str
+    size: float | None
+    stderr: float | None
+    unit: str
+    before: float
+    left: float
+    gain: float
+    sentence: str
+    remedy: str
+    law: str = ""
+    certain: bool = True
+    parameters: dict[str, Any] | None = None
+    record: Record | None = None
+
+    def as_json(self) -> dict[str, Any]:
+        """The cause's entry in result.json: plain numbers, None where there is none."""
+        def plain(v: float | None) -> float | None:
+            return None if v is None or not np.isfinite(v) else float(v)
+
+        return {
+            "name": self.name, "channel": self.channel, "size": plain(self.size), "stderr": plain(self.stderr), "unit": self.unit,
+            "rms_over_noise": plain(self.before), "rms_over_noise_without": plain(self.left), "text": self.sentence,
+            "remedy": self.remedy, "effect": self.law or None, "parameters": self.parameters or {},
+        }  # fmt: skip

@@ -1,0 +1,47 @@
+"""Whether a fit misses its record by more than chance: by the windows' own degrees of freedom, not by a fixed ratio.
+
+The sum of squares of a window in which only noise is left follows a chi-square distribution. A right model has windows beyond its
+far end now and then, no more; a wrong one has many, or all of them are a little larger than they should be.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from .fit import Fit
+    from .score import Score
+
+NOISE_KNOWN = 0.03
+"""Relative error of the estimated noise level that is put down to the estimate and not to the model."""
+SIGMAS = 4.0
+"""Standard deviations by which the median window may exceed the noise: one right record in 30 000 does."""
+RARE = 1e-3
+"""Chance with which noise alone takes a window beyond the limit that is counted."""
+SHARE, FEW = 0.05, 3
+"""Windows beyond that limit, as a share and at least, that no chance explains; single ones are left to contacts that just graze an
+edge, where a right model parts from the record too."""
+
+
+def beyond_chance(fit: Fit) -> bool:
+    """Whether any record of a fit is missed by more than noise explains."""
+    return any(misses(score, 2 if fit.system is None else len(fit.system.state_names)) for score in fit.scores)
+
+
+def misses(score: Score, states: int) -> bool:
+    """The same of one record; ``states`` (2 for position and speed) begin every window anew and take so much of its freedom."""
+    from scipy.special import chdtri  # heavy to load, and not needed to fit
+
+    ratio = np.asarray(score.window_rms, dtype=float)
+    ratio = ratio[np.isfinite(ratio)]
+    if ratio.size == 0:
+        return False
+    freedom = max(score.t.size / max(np.asarray(score.window_rms).size, 1) - states, 1.0)
+    own = ratio / (1.0 + NOISE_KNOWN)
+    # The median of K values that each have a standard deviation s has one of 1.25 s / sqrt(K).
+    spread = 1.25 / np.sqrt(2.0 * freedom * ratio.size)
+    limit = np.sqrt(chdtri(freedom, RARE) / freedom)
+    beyond = int(np.sum(own > limit))
+    return bool(np.median(own) > 1.0 + SIGMAS * spread or beyond > max(FEW, SHARE * ratio.size))
