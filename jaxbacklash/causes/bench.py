@@ -1,8 +1,8 @@
 """The fit's own problem with corrected data in place of the record's: same shapes, so that no program is compiled anew.
 
 A correction changes only data, never how the model moves. So the misfit that would be left after a step of all unknowns, the
-windows' and the parameters', is a quadratic function of a small correction: three looks at the windows tell how much it brings, how
-large it is, and with what error, with everything else free to make up for it (a score test, Rao 1948).
+windows' and the parameters', is a quadratic function of a small correction: three looks at the windows tell how much it
+brings, how large it is, and with what error, with everything else free to make up for it (a score test, Rao 1948).
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ ROUNDS, SETTLED = 5, 0.3
 
 @dataclass(frozen=True)
 class Point:
-    """The model on data without a cause of this ``size``, known to ``stderr``: ``problem`` and ``unknowns`` where a search has ended,
-    ``cost`` half the sum of squares, ``freedom`` the samples less the unknowns, ``layout`` of the windows, ``schur`` (q, q) the
-    information about the parameters."""
+    """The model on data without a cause of this ``size``, known to ``stderr``: ``problem`` and ``unknowns`` where a search has
+    ended, ``cost`` half the sum of squares, ``freedom`` the samples less the unknowns, ``layout`` of the windows, ``schur``
+    (q, q) the information about the parameters."""
 
     size: float
     stderr: float
@@ -61,7 +61,8 @@ class Bench:
     """A fit, and its records cut into the same windows after a correction."""
 
     def __init__(self, fit: Fit) -> None:
-        assert fit.problem is not None and fit.unknowns is not None
+        assert fit.problem is not None
+        assert fit.unknowns is not None
         self.fit, self.problem, self.unknowns = fit, fit.problem, fit.unknowns
         w = self.problem.windows
         self._panel, self._length, self._intervals = float(w.panel), w.samples, w.intervals
@@ -85,7 +86,7 @@ class Bench:
         return float(stats["cost"] - stats["promise"])
 
     def parabola(self, kind: Kind, size: float, problem: Problem, at: Unknowns) -> tuple[float, float, float]:
-        """Where the misfit left is least along a cause's size: by how much the sum of squares falls there, the size, its error."""
+        """Where the misfit is least along a cause's size: by how much the sum of squares falls there, the size, its error."""
         h = kind.step(self.fit.records[0])
         low, here, high = (self.look(kind, size + s, problem, at) for s in (-h, 0.0, h))
         slope, curvature = (high - low) / (2.0 * h), (high - 2.0 * here + low) / h**2
@@ -126,7 +127,7 @@ class Bench:
         return score(point.problem, point.unknowns, point.layout, group=self.group)[0]
 
     def _anew(self, kind: Kind, size: float, system: System) -> Point | None:
-        """The model searched for on corrected records from a system that may be far from the fit's; None where that leads nowhere."""
+        """The model searched for on corrected records from a system that may be far off; None where that leads nowhere."""
         try:
             done = self.corrected(kind, size)
             windows, layout = self.cut([one.record for one in done])
@@ -153,8 +154,11 @@ class Bench:
         if kind.measured_only:
             measured = np.asarray(problem.windows.measured).copy()
             for first, count, one in self._rows(self.layout):
-                measured[first : first + count] = _in_rows(done[one].record.channels[done[one].record.observed_name], count, self._length)
-            windows = eqx.tree_at(lambda w: (w.measured, w.weight), problem.windows, (measured, self.problem.windows.weight))
+                record = done[one].record
+                measured[first : first + count] = _in_rows(record.channels[record.observed_name], count, self._length)
+            windows = eqx.tree_at(
+                lambda w: (w.measured, w.weight), problem.windows, (measured, np.asarray(self.problem.windows.weight))
+            )
             layout = self.layout
         else:
             windows, layout = self.cut([one.record for one in done])
@@ -162,7 +166,7 @@ class Bench:
         return eqx.tree_at(lambda p: p.windows, problem, windows), layout
 
     def _weighed(self, windows: Windows, layout: Layout, kind: Kind, done: Sequence[Corrected]) -> Windows:
-        """Windows with the fit's own noise of the measured channel, or the one that the correction tells, and what it has left of it."""
+        """Windows with the fit's own noise of the measured channel, or that of the correction, and what this has left of it."""
         weight = np.asarray(windows.weight).copy()
         for first, count, one in self._rows(layout):
             noise = done[one].noise or self.fit.noise[one]

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from ..fitting.fit import Fit
     from ..records import Record
 
 
@@ -18,8 +17,7 @@ class Cause:
 
     Attributes
     ----------
-    name : what kind of cause, in snake case: ``delay``, ``clock``, ``scale``, ``sign``, ``inertia``, ``held_samples``, ``held_start``,
-        ``step``, ``force_limit``
+    name : what kind of cause: ``delay``, ``clock``, ``scale``, ``sign``, ``inertia``, ``held_samples``, ``held_start``, ``step``
     channel : the channel that it is about, empty where it is about all
     size : how large it is, None where it has no size (a turned sign)
     stderr : standard error of the size, None where that cannot be told
@@ -29,7 +27,8 @@ class Cause:
     sentence : one sentence for a person, with the sizes in it
     remedy : options to add to the command, or a command, ready to paste; empty where there is none
     law : the canonical name of the catalogue's effect that says the same, empty where there is none
-    fit : the joint fitted to the corrected record, None where that could not be told
+    certain : whether only noise is left without it; else something else is missing beside it
+    parameters : values of the joint on the corrected record, by name, None where one is not determined
     record : the corrected record
     """
 
@@ -45,16 +44,24 @@ class Cause:
     remedy: str
     law: str = ""
     certain: bool = True
-    parameters: dict[str, Any] | None = None
+    parameters: dict[str, float | None] = field(default_factory=dict)
     record: Record | None = None
+
+    @property
+    def undone(self) -> str:
+        """What the joint comes to on the corrected record, in words."""
+        known = ", ".join(f"{name} {value:.6g}" for name, value in self.parameters.items() if value is not None)
+        return f"On the record without it: {known}" if known else ""
 
     def as_json(self) -> dict[str, Any]:
         """The cause's entry in result.json: plain numbers, None where there is none."""
+
         def plain(v: float | None) -> float | None:
             return None if v is None or not np.isfinite(v) else float(v)
 
         return {
             "name": self.name, "channel": self.channel, "size": plain(self.size), "stderr": plain(self.stderr), "unit": self.unit,
             "rms_over_noise": plain(self.before), "rms_over_noise_without": plain(self.left), "text": self.sentence,
-            "remedy": self.remedy, "effect": self.law or None, "parameters": self.parameters or {},
+            "remedy": self.remedy, "effect": self.law or None, "certain": self.certain,
+            "parameters": {name: plain(value) for name, value in self.parameters.items()},
         }  # fmt: skip

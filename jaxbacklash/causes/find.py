@@ -1,4 +1,4 @@
-"""Which causes of misfit lie in the record: proposed by the weak form and a linearisation, settled by a fit, told if it is decisive."""
+"""Which causes of misfit lie in the record: proposed by the weak form and a linearisation, settled by a fit, told if decisive."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ LOOKED, TRIED = 2, 10
 
 @dataclass(frozen=True)
 class Guess:
-    """A cause that is likely: its ``size``, the ``system`` to search from if that is far from the fit's, and the share of the misfit
-    that it is expected to leave."""
+    """A cause that is likely: its ``size``, the ``system`` to search from if that is far from the fit's, and the share of the
+    misfit that it is expected to leave."""
 
     kind: Kind
     size: float
@@ -51,7 +51,7 @@ class Guess:
 
 
 def find_causes(fit: Fit, progress: Callable[[str, float], None] = silent) -> list[Cause]:
-    """What about the record explains that a fit misses it, the most telling first; nothing where the fit misses by no more than chance.
+    """What about the record explains that a fit misses it, the most telling first; nothing where that is no more than chance.
 
     Parameters
     ----------
@@ -98,7 +98,9 @@ def _large(bench: Bench) -> Iterator[Guess]:
     fit = bench.fit
     part = part_of(fit.records[0])
     before = _screened(fit, part) if fit.score.rms > LARGE else None
-    for kind in kinds_for(fit) if before is not None else ():
+    if before is None:
+        return
+    for kind in kinds_for(fit):
         tried = []
         for size in kind.coarse(part):
             try:

@@ -1,8 +1,8 @@
 """The causes with a size that is searched for: what each would have done to a record, undone.
 
-A kind takes a record and a size and gives the record as it would be without the cause, and for each sample of the measured channel the
-share of the noise that it still has (0: no value is left there). Small sizes are found by a linearisation, large ones from a coarse
-list and the weak form (`screen`).
+A kind takes a record and a size and gives the record as it would be without the cause, and for each sample of the measured
+channel the share of the noise that it still has (0: no value is left there). Small sizes are found by a linearisation, large
+ones from a coarse list and the weak form (`screen`).
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from .resampled import read_at
 
 @dataclass(frozen=True)
 class Corrected:
-    """A corrected ``record`` and ``share`` (N,), how much of the noise's standard deviation each value of the measured channel has;
-    ``noise`` of the measured channel where it is another than that of the record as it stands."""
+    """A corrected ``record`` and ``share`` (N,), how much of the noise's standard deviation each value of the measured channel
+    has; ``noise`` of the measured channel where it is another than that of the record as it stands."""
 
     record: Record
     share: np.ndarray
@@ -28,7 +28,7 @@ class Corrected:
 
 @dataclass(frozen=True)
 class Kind:
-    """A cause with one size: ``name`` and ``channel`` as in `Cause`; ``mixed`` True where only y is concerned though z is recorded."""
+    """A cause with one size: ``name`` and ``channel`` as in `Cause`; ``mixed`` where only y is concerned though z is recorded."""
 
     channel: str
     mixed: bool = False
@@ -91,7 +91,7 @@ class Delay(Kind):
 
 
 class Clock(Kind):
-    """The clock of the measured channel runs fast by a share of the other's: it is late by so much of the time since the start."""
+    """The clock of the measured channel runs slow by a share of the other's: it is late by so much of the time passed."""
 
     name, far = "clock", False
 

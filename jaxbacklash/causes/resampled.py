@@ -1,16 +1,16 @@
 r"""A channel as it would have been sampled at other instants: read between its samples by a windowed sinc.
 
-An ideal low-pass filter (Shannon 1949) leaves white noise white; cut off after `TAPS` samples on either side and tapered (Kaiser 1974)
-it takes away a few percent of it between the samples, so that the share of the noise which is left is returned beside the values.
+An ideal low-pass filter (Shannon 1949) leaves white noise white; cut off after `TAPS` samples on either side and tapered (Kaiser
+1974) it takes away a few percent of it between the samples: the share of the noise that is left is returned beside the values.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-TAPS, TAPER = 16, 6.0
-"""Samples on either side that take part in a value between two samples, and the shape of the Kaiser window over them: signals up to
-0.85 of half the sampling rate are kept to a thousandth."""
+TAPS, TAPER = 16, 9.0
+"""Samples on either side that take part in a value between two samples, and the shape of the Kaiser window over them: signals
+up to 0.8 of half the sampling rate are kept to a ten-thousandth."""
 TOGETHER = 1 << 16
 """Values that are worked out at a time: 17 MB of weights."""
 
@@ -25,7 +25,7 @@ def read_at(values: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, np.ndar
 
     Returns
     -------
-    the values (K,), and the share of white noise's standard deviation that each still has (K,), 0 where the channel does not reach
+    the values (K,), and the share of white noise's standard deviation that each has (K,), 0 where the channel does not reach
 
     Example
     -------

@@ -14,6 +14,9 @@ from ..records import Record
 MOST = 2500
 """Samples of a record that the weak form is asked on, for speed."""
 
+PLAYS = 16
+"""Sizes of the play that it tries: enough to tell a wrong record from a right one."""
+
 
 def part_of(record: Record) -> Record:
     """The stretch of a record where the measured channel moves most."""
@@ -28,6 +31,6 @@ def misfit(record: Record, inertia: float | None, play: bool, spring: bool, effe
     """The weak-form estimate of a record, whose ``misfit`` is the share that it leaves; None for a record that has none."""
     try:
         with np.errstate(all="ignore"):
-            return estimate(record, inertia=inertia, play=play, spring=spring, effects=effects)
+            return estimate(record, inertia=inertia, play=play, spring=spring, effects=effects, plays=PLAYS)
     except (BadInput, NoAnswer, np.linalg.LinAlgError):
         return None

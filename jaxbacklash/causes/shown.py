@@ -1,4 +1,4 @@
-"""Causes that show in the samples themselves: where they are is read off the record, and the fit only says whether they matter."""
+"""Causes that show in the samples: where they are is read off the record, and the fit only says whether they matter."""
 
 from __future__ import annotations
 
@@ -10,15 +10,13 @@ from ..records import Record
 from ..signals import noise_level
 from .kinds import Corrected, Kind
 
-LEAST_HELD = 0.5
-"""Share of samples that repeat the one before, from which a channel counts as held."""
+RHYTHM, FRESH = 0.9, 32
+"""Share of the gaps between fresh samples that are whole multiples of the usual one, and fresh samples at least, for a rhythm."""
 STILL, CREPT, LONG = 5.0, 0.02, 0.02
-"""Noises, or share of the channel's range, within which a channel at rest stays, and the share of a record that a rest at its start
-lasts at least."""
+"""Noises, or share of the channel's range, within which a channel at rest stays, and the share of a record that a rest at its
+start lasts at least."""
 SIDE, CLEAR = 6, 12.0
 """Samples on either side of a step that tell where the channel was going, and by how many noises of that a step stands out."""
-TOP = 8
-"""Samples in a row, at least, that a force stays at its largest value where it is clipped."""
 
 
 @dataclass(frozen=True)
@@ -35,19 +33,23 @@ class Held(Kind):
     def coarse(self, record: Record) -> np.ndarray:
         values = record.channels[record.observed_name]
         fresh = np.flatnonzero(np.diff(values) != 0.0)
-        if fresh.size < 32:
+        if fresh.size < FRESH:
             return np.array([])
         gaps = np.diff(fresh)
         usual = int(np.median(gaps))
         # An encoder at rest repeats itself too, but not with a rhythm.
         rhythm = float(np.mean(gaps % usual == 0)) if usual > 1 else 0.0
-        return np.array([float(usual)]) if rhythm > 0.9 else np.array([])
+        return np.array([float(usual)]) if rhythm > RHYTHM else np.array([])
 
     def noise(self, record: Record, every: int) -> float:
         """Noise of the fresh samples, by themselves."""
-        values = record.channels[record.observed_name]
-        first = int(np.flatnonzero(np.diff(values) != 0.0)[0]) + 1
+        values, first = record.channels[record.observed_name], first_fresh(record)
         return float(noise_level(record.t[first::every], values[first::every]))
+
+
+def first_fresh(record: Record) -> int:
+    """The first sample of the measured channel that does not repeat the one before."""
+    return int(np.flatnonzero(np.diff(record.channels[record.observed_name]) != 0.0)[0]) + 1
 
 
 @dataclass(frozen=True)
@@ -79,7 +81,8 @@ class HeldStart(Kind):
 class Step(Kind):
     """Counts were lost at one sample: from there on the channel is off by a constant."""
 
-    name, unit, at = "step", "rad", 0
+    at: int = 0
+    name, unit = "step", "rad"
 
     def corrected(self, record: Record, size: float) -> Corrected:
         after = np.arange(record.samples) >= self.at
@@ -92,7 +95,7 @@ class Step(Kind):
 
 
 def steps(values: np.ndarray) -> tuple[np.ndarray, float]:
-    """By how much a channel jumps before each sample (N,), between parabolas through the samples before and after, and its noise."""
+    """By how much a channel jumps before each sample (N,), between parabolas through those before and after, and its noise."""
     ahead = _reaching(SIDE)
     size = np.zeros(values.size)
     if values.size < 4 * SIDE:

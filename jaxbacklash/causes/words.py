@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import PurePath
+from shlex import quote
 
 import numpy as np
 
@@ -14,6 +16,7 @@ from ..records import Record
 from .bench import Point
 from .cause import Cause
 from .kinds import Kind
+from .shown import Step, first_fresh
 
 
 def told(
@@ -29,8 +32,8 @@ def told(
         found = {name: v if v is None or name == "backlash" else v * point.size for name, v in found.items()}
     size = None if kind.name == "sign" else point.size
     return Cause(
-        kind.name, kind.channel, size, stderr if np.isfinite(stderr) else None, kind.unit, before, left, gain, sentence, remedy, law,
-        certain, found, record,
+        kind.name, kind.channel, size, stderr if np.isfinite(stderr) else None, kind.unit, before, left, gain, sentence, remedy,
+        law, certain, found, record,
     )  # fmt: skip
 
 
@@ -39,17 +42,21 @@ def _delay(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str,
     other = fit.records[0].input_name
     spread = f" +- {ms * error:.2g}" if error else ""
     alone = " alone, though z = y - x was formed of both," if kind.mixed else ""
-    words = f"{kind.channel}{alone} is {late} by {number(ms * abs(size), ms * error if error else None)}{spread} ms against {other}"
+    by = number(ms * abs(size), ms * error if error else None)
+    words = f"{kind.channel}{alone} is {late} by {by}{spread} ms against {other}"
     return words, ("" if kind.mixed else "--effects sensor_delay"), ("" if kind.mixed else "sensor_delay")
 
 
 def _clock(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str, str, str]:
     other = fit.records[0].input_name
     spread = f" +- {1e6 * error:.2g}" if error else ""
-    way = "fast" if size > 0 else "slow"
+    way = "slow" if size > 0 else "fast"
     parts = number(1e6 * abs(size), 1e6 * error if error else None)
     end = size * (fit.records[0].t[-1] - fit.records[0].t[0])
-    words = f"the clock of {kind.channel} runs {way} by {parts}{spread} ppm against that of {other} ({1e3 * end:.2g} ms at the end)"
+    words = (
+        f"the clock of {kind.channel} runs {way} by {parts}{spread} ppm against that of {other} "
+        f"({1e3 * abs(end):.2g} ms at the end)"
+    )
     return words, "", ""
 
 
@@ -74,15 +81,24 @@ def _inertia(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[st
     spread = f" +- {error * given:.2g}" if error else ""
     unit = "kg" if fit.translational else "kg m^2"
     found = number(given * size, error * given if error else None)
-    words = f"the measured force tells an inertia of {found}{spread} {unit}, {size:.3g} times the {given:.6g} that was given (or F is {size:.3g} times too large)"
+    words = (
+        f"the measured force tells an inertia of {found}{spread} {unit}, {size:.3g} times the {given:.6g} that was given "
+        f"(or F reads {size:.3g} times too large)"
+    )
     return words, f"--inertia {given * size:.4g}, or leave --inertia out", ""
 
 
 def _held(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str, str, str]:
-    every = int(size)
-    rate = fit.records[0].rate_hz / every
+    record, every = fit.records[0], int(size)
+    rate = record.rate_hz / every
     words = f"{kind.channel} is refreshed every {every} samples only ({rate:.4g} Hz) and repeats its last value between"
-    return words, f"keep only the rows where {kind.channel} is new: --resample-rate {rate:.6g} reads between held values and is no cure", ""
+    # Resampling would smooth the stairs, and keep their lag: only the fresh rows themselves are right.
+    path = PurePath(record.path)
+    if path.suffix not in (".csv", ".txt", ".tsv", ".dat"):
+        return words, "", ""
+    name = f"{path.stem}-fresh{path.suffix}"
+    keep = f"awk 'NR == 1 || (NR - 2) % {every} == {first_fresh(record) % every}' {quote(record.path)} > {quote(name)}"
+    return words, f"`{keep}` keeps the fresh rows below one line of names: use {quote(name)} then", ""
 
 
 def _held_start(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str, str, str]:
@@ -91,7 +107,8 @@ def _held_start(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple
 
 def _step(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str, str, str]:
     unit = channel_unit(kind.channel, translational=fit.translational)
-    at = getattr(kind, "at")
+    assert isinstance(kind, Step)
+    at = kind.at
     when = float(fit.records[0].t[at])
     words = f"{kind.channel} jumps by {size:.4g} {unit} at {when:.6g} s (row {at + 1}) and stays there: counts were lost"
     return words, f"--from {when:.6g}", ""

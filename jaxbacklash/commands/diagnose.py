@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import shlex
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from .. import __version__
+from ..causes import Cause, find_causes
 from ..criticism import Findings, Ranking, rank_effects, where_it_fails
 from ..criticism.ranking import table
 from ..errors import BadInput
 from ..fitting import Fit
 from ..fitting import fit as fit_records
+from ..fitting.print_fit import causes_text
 from ..fitting.setup import add_effects
 from ..model_file import dump_model
 from ..report.refine_result import candidates_json
@@ -49,12 +52,13 @@ def run(
             record, model=model if system is None else "joint", inertia=inertia, effects=names(effects), system=system,
             window=window, starts=starts, seed=seed, translational=translational, progress=tell,
         )  # fmt: skip
+        causes = find_causes(fit, tell)
         tell("looking for the missing torque", 0.88)
         found = where_it_fails(fit)
         tell("judging absent effects", 0.92)
         ranking = rank_effects(fit, window=window)
         words = shlex.join(["jaxbacklash", *sys.argv[1:]])
-        result = diagnosis(fit, found, ranking, command_line=words)
+        result = diagnosis(fit, found, ranking, causes, command_line=words)
         if folder is not None:
             from ..report.diagnose_report import diagnose_report  # pictures bring matplotlib, which a plain run need not wait for
 
@@ -69,24 +73,27 @@ def run(
     if as_json:
         sys.stdout.write(json_text(result))
         return
-    print(text(fit, found, ranking))
+    print(text(fit, found, ranking, causes))
     if folder is not None:
         print(f"written: {folder}/result.json, model.toml, report.html")
 
 
-def diagnosis(fit: Fit, found: Findings, ranking: Ranking, *, command_line: str = "") -> dict[str, Any]:
-    """The whole result of ``diagnose``: a fit's, with the findings, the missing torque and the ranking of absent effects."""
-    result = result_of(fit, command="diagnose", command_line=command_line, version=__version__)
+def diagnosis(
+    fit: Fit, found: Findings, ranking: Ranking, causes: Sequence[Cause] = (), *, command_line: str = ""
+) -> dict[str, Any]:
+    """The whole result of ``diagnose``: a fit's, with causes in the record, the findings, the missing torque and the ranking of
+    absent effects."""
+    result = result_of(fit, command="diagnose", command_line=command_line, version=__version__, causes=causes)
     result |= found.as_json()
-    result["verdict"] = "complete" if found.adequate else "incomplete"
-    result["verdict_text"] = " ".join(found.sentences[:2])
+    result["verdict"] = "complete" if found.adequate and not causes else "incomplete"
+    result["verdict_text"] = " ".join([*([causes_text(causes)] if causes else []), *found.sentences[:2]])
     result["stages"][0]["candidates"] = candidates_json(ranking)
     return result
 
 
-def text(fit: Fit, found: Findings, ranking: Ranking) -> str:
-    """What a person reads: the findings, then tables of what was asked and of what each absent effect would bring."""
-    lines = [fit.records[0].summary(), *found.sentences]
+def text(fit: Fit, found: Findings, ranking: Ranking, causes: Sequence[Cause] = ()) -> str:
+    """What a person reads: causes in the record, the findings, tables of what was asked and of what effects would bring."""
+    lines = [fit.records[0].summary(), *([causes_text(causes)] if causes else []), *found.sentences]
     if found.surface is not None:
         lines += ["", "what the missing torque depends on, alone or in pairs: share explained out of sample"]
         lines += [f"  {' x '.join(names):<16} {100 * share:5.1f} %" for names, share, _ in found.surface.tried[:5]]
@@ -96,6 +103,8 @@ def text(fit: Fit, found: Findings, ranking: Ranking) -> str:
         lines += [f"  {name:<24} {a:12.6g} {b:12.6g}" for name, (a, b) in found.surface.moved.items()]
     if found.adequate:
         return "\n".join(lines)
+    if causes:
+        lines += ["", "the ranking below is of the record as it stands: undo the cause first"]
     lines += ["", f"what one more effect would bring ({ranking.current:.3g} now); add one with fit --effects NAME"]
     lines += table(ranking)
     return "\n".join(lines)

@@ -9,9 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from .. import __version__
+from ..causes import Cause, find_causes
 from ..errors import BadInput
 from ..fitting import Fit
 from ..fitting import fit as fit_records
+from ..fitting.print_fit import text as fit_text
 from ..fitting.setup import add_effects
 from ..model_file import dump_model
 from ..report.result import as_json as result_of
@@ -59,7 +61,8 @@ def run(
 def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, *, silent: bool = False) -> None:
     """Print a fit, unless silent, and write result.json, model.toml and report.html into the folder."""
     words = shlex.join(["jaxbacklash", *sys.argv[1:]])
-    result = result_of(found, command="fit", command_line=words, version=__version__)
+    causes: list[Cause] = find_causes(found, tell)
+    result = result_of(found, command="fit", command_line=words, version=__version__, causes=causes)
     text = json_text(result)
     if folder is not None:
         from ..report.fit_report import fit_report  # pictures bring matplotlib, which a plain run need not wait for
@@ -75,7 +78,7 @@ def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, *, silent
     if machine:
         sys.stdout.write(text)
     elif not silent:
-        print(found)
+        print(fit_text(found, causes))
         print(result["cross_check"]["text"])
         if folder is not None:
             print(f"written: {folder}/result.json, model.toml, report.html")

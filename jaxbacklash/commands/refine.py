@@ -13,6 +13,7 @@ from typing import Any
 from .. import __version__
 from ..criticism import Findings, Refinement, Surface, where_it_fails
 from ..criticism import refine as refine_record
+from ..criticism.causes_first import causes_first, told
 from ..criticism.ranking import plain
 from ..errors import NoAnswer
 from ..model_file import dump_model
@@ -49,12 +50,17 @@ def run(
     # What other methods say of the model that is likely kept is worked out beside the search for more.
     with progress(as_json) as tell, ThreadPoolExecutor(1) as aside:
         checked: list[Future[dict[str, Any]]] = []
-        found = refine_record(
-            record, heldout=held, model=model if system is None else "joint", inertia=inertia, system=system, window=window,
-            translational=translational, seed=seed, progress=tell,
-            settled=lambda fit: checked.append(aside.submit(other_methods, fit)),
-        )  # fmt: skip
-        deliver(found, folder, as_json, tell, checked[-1].result)
+        how: dict[str, Any] = {
+            "heldout": held, "model": model if system is None else "joint", "inertia": inertia, "system": system,
+            "window": window, "translational": translational, "seed": seed, "progress": tell,
+        }  # fmt: skip
+        early, causes = causes_first(record, **how)
+        if early is not None:
+            deliver(early, folder, as_json, tell)
+            return
+        found = refine_record(record, **how, settled=lambda fit: checked.append(aside.submit(other_methods, fit)))
+        mended = told(found, causes)
+        deliver(mended, folder, as_json, tell, checked[-1].result if mended is found else lambda: {})
 
 
 def _given(model: str, inertia: float | None) -> System | None:
@@ -77,9 +83,9 @@ def deliver(
     """Print a refinement and write result.json, model.toml and report.html into the folder; ``checked`` waits for what other
     methods say of it, nothing if they have not been asked."""
     with ThreadPoolExecutor(1) as aside:
-        last = None if found.verdict.complete else _look(found, -1, tell)
+        last = None if found.verdict.complete or found.causes else _look(found, -1, tell)
         # The base model is looked at beside the writing and drawing of all else.
-        alone = last is not None and len(found.stages) == 1
+        alone = (last is not None and len(found.stages) == 1) or bool(found.causes)
         base = None if alone or folder is None else aside.submit(_look, found, 0, tell)
         words = shlex.join(["jaxbacklash", *sys.argv[1:]])
         result = refinement_json(found, last, command_line=words, version=__version__, checked=checked() or None)

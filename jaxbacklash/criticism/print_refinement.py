@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from ..fitting.print_fit import at_most, line
+from ..fitting.print_fit import at_most, doubt, line
 from ..parameters import channel_unit
 from .ranking import of_stage, table
 
@@ -46,9 +46,10 @@ def text(refinement: Refinement) -> str:
     if fit.per_inertia:
         lines.append("no inertia was given: stiffness, damping and torques are per unit inertia")
     lines.append("parameters, value +- standard error, and 95 % interval")
+    note = doubt(fit)
     for estimate in fit.parameters.values():
         ends = estimate.ci95
-        shown = line(estimate)
+        shown = line(estimate, note)
         lines.append(f"{shown:<72} {ends[0]:.6g} to {ends[1]:.6g}" if ends is not None else shown)
     lines += ["", alternatives_sentence(refinement)]
     for number in sorted({0, len(stages) - 1}, reverse=True):

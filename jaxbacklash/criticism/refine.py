@@ -10,6 +10,7 @@ from itertools import pairwise
 import equinox as eqx
 import numpy as np
 
+from ..causes import Cause
 from ..errors import BadInput
 from ..fitting.counts import few_counts
 from ..fitting.equation_error import Start
@@ -57,7 +58,8 @@ class Refinement:
     """What the loop found.
 
     Attributes: ``stages``, the last one is the model kept; ``alternatives``, other sets of effects that the record cannot
-    tell apart from it; ``experiments`` that would separate the first of them; ``verdict``; ``seconds``.
+    tell apart from it; ``experiments`` that would separate the first of them; ``verdict``; ``seconds``; ``causes`` of misfit
+    that lie in the record, for which no law was looked for.
     """
 
     stages: tuple[Stage, ...]
@@ -65,6 +67,7 @@ class Refinement:
     verdict: Verdict
     seconds: dict[str, float] = field(default_factory=dict)
     experiments: tuple[Experiment, ...] = ()
+    causes: tuple[Cause, ...] = ()
 
     @property
     def fit(self) -> Fit:

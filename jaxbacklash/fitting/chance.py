@@ -21,8 +21,8 @@ SIGMAS = 4.0
 RARE = 1e-3
 """Chance with which noise alone takes a window beyond the limit that is counted."""
 SHARE, FEW = 0.05, 3
-"""Windows beyond that limit, as a share and at least, that no chance explains; single ones are left to contacts that just graze an
-edge, where a right model parts from the record too."""
+"""Windows beyond that limit, as a share and at least, that no chance explains; single ones are left to contacts that just graze
+an edge, where a right model parts from the record too."""
 
 
 def beyond_chance(fit: Fit) -> bool:

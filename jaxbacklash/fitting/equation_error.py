@@ -46,6 +46,7 @@ def estimate(
     play: bool = True,
     spring: bool = True,
     effects: Sequence[AbstractEffect] = (),
+    plays: int = 72,
 ) -> Start:
     """Estimate inertia (when it is None), play, stiffness, damping and strengths of effects from one record.
 
@@ -55,6 +56,7 @@ def estimate(
     inertia : known inertia J [kg m^2]; None to estimate it, which needs a measured force
     play : the joint has a play
     spring : the joint has a stiffness at all
+    plays : sizes of the play that are tried before the best of them is refined
     effects : effects of the model; those without internal states whose torque vanishes with one strength take part
     """
     weak = _WeakForm(record)
@@ -84,7 +86,7 @@ def estimate(
 
     half = 0.0
     if spring and play:
-        grid = reach * np.linspace(0.01, 0.97, 72)
+        grid = reach * np.linspace(0.01, 0.97, plays)
         misfits = [solve(h)[0] for h in grid]
         k = int(np.argmin(misfits))
         low, high = grid[max(k - 1, 0)], grid[min(k + 1, grid.size - 1)]

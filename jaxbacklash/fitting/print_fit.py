@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from ..parameters import channel_unit
+from .chance import beyond_chance
 from .counts import few_counts
 from .lengths import SCORE_WINDOW
 
@@ -14,6 +16,21 @@ if TYPE_CHECKING:
     from .estimates import Estimate
     from .fit import Fit
     from .score import Score
+
+
+DOUBTED = "only if the model is right: it is not, see below"
+"""What stands beside every interval of a fit that misses its record by more than chance."""
+
+
+class Named(Protocol):
+    """A cause of misfit, as `jaxbacklash.causes.Cause` tells it."""
+
+    @property
+    def sentence(self) -> str: ...
+    @property
+    def remedy(self) -> str: ...
+    @property
+    def undone(self) -> str: ...
 
 
 def number(value: float, stderr: float | None) -> str:
@@ -26,8 +43,8 @@ def number(value: float, stderr: float | None) -> str:
     return f"{value:.6g}"
 
 
-def line(estimate: Estimate) -> str:
-    """One parameter in words: value, error, interval, or why there is none."""
+def line(estimate: Estimate, note: str = "") -> str:
+    """One parameter in words: value, error, interval, or why there is none; a ``note`` stands beside an interval."""
     name = f"  {estimate.label:<24}"
     if estimate.value is None:
         return f"{name} {estimate.verdict}: {estimate.why}"
@@ -39,11 +56,16 @@ def line(estimate: Estimate) -> str:
     text = f"{name} {value} +- {estimate.stderr:.2g} {unit}" + (f" ({share})" if share else "")
     if estimate.unit == "rad" and abs(estimate.value) < 1.0:
         text += f" = {np.degrees(estimate.value):.4g} deg"
-    return text
+    return f"{text}  [{note}]" if note else text
 
 
-def text(fit: Fit) -> str:
-    """The whole report."""
+def doubt(fit: Fit) -> str:
+    """What is to stand beside the intervals of a fit: nothing where it leaves only noise."""
+    return DOUBTED if beyond_chance(fit) else ""
+
+
+def text(fit: Fit, causes: Sequence[Named] = ()) -> str:
+    """The whole report; ``causes`` in the record that explain a misfit are told after the verdict."""
     lines = []
     for number_of, (record, score, noise, moved) in enumerate(zip(fit.records, fit.scores, fit.noise, fit.input_noise)):
         lines.append(record.summary())
@@ -62,11 +84,12 @@ def text(fit: Fit) -> str:
     lines.append(f"model: {fit.model}; effects added: {effects}")
     if fit.per_inertia:
         lines.append("no inertia was given: stiffness, damping and torques are per unit inertia")
-    lines += [line(estimate) for estimate in fit.parameters.values()]
+    note = doubt(fit)
+    lines += [line(estimate, note) for estimate in fit.parameters.values()]
     lines += _correlations(fit)
     how = "tied into one trajectory" if fit.tied else "each on its own"
     lines.append(f"{fit.agreeing} of {fit.tried} starts reached this minimum; windows {how}; {fit.steps} steps")
-    lines.append(verdict_text(fit))
+    lines.append(verdict_text(fit, causes))
     return "\n".join(lines)
 
 
@@ -93,16 +116,33 @@ def _correlations(fit: Fit) -> list[str]:
     return lines
 
 
-def verdict_text(fit: Fit) -> str:
-    """One or two sentences: does the model explain the record, and what could not be found?"""
+def causes_text(causes: Sequence[Named]) -> str:
+    """The causes found in the record, each with what to type."""
+    said = []
+    for cause in causes:
+        after = [f"Pass {cause.remedy}." if cause.remedy.startswith("--") else f"{cause.remedy}."] if cause.remedy else []
+        after += [f"{cause.undone}."] if cause.undone else []
+        said.append(" ".join([f"A cause lies in the record: {cause.sentence}.", *after]))
+    return " ".join(said)
+
+
+def verdict_text(fit: Fit, causes: Sequence[Named] = ()) -> str:
+    """A few sentences: does the model explain the record, which cause in the record does, and what could not be found?"""
     worst = max(fit.scores, key=lambda score: score.median)
-    if fit.adequate:
+    beyond = beyond_chance(fit)
+    if fit.adequate and beyond:
+        sentence = (
+            f"The model explains the record to {worst.rms:.3g} times its noise (median window {worst.median:.2f}), but "
+            "what is left is more than chance: intervals hold only if the model is right."
+        )
+    elif fit.adequate:
         sentence = f"The model explains the record to its noise (median window {worst.median:.2f} times the noise)."
     else:
         sentence = (
             f"The model misses something: the median window is off by {worst.median:.3g} times the noise, all windows by "
             f"{worst.rms:.3g}; intervals are widened by that misfit and hold only if the model is right."
         )
+    sentence = f"{sentence} {causes_text(causes)}".rstrip()
     missing = [e for e in fit.parameters.values() if e.value is None]
     if missing:
         sentence += " Not found: " + "; ".join(f"{e.label or e.name} ({e.why})" for e in missing) + "."

@@ -49,7 +49,9 @@ def refinement_json(
     """
     fit, stages = refinement.fit, refinement.stages
     checked = other_methods(fit) if checked is None else checked
-    result = fit_json(fit, command="refine", command_line=command_line, version=version, checked=checked)
+    result = fit_json(
+        fit, command="refine", command_line=command_line, version=version, checked=checked, causes=refinement.causes
+    )
     result.pop("starts")  # the loop fits from one start, which its quick look has chosen
     followed = [*stages[1:], None]
     result["stages"] = [

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from ..causes import Cause
 from ..criticism.cross_check import cross_check as skeletons_beside
 from ..fitting import Comparison, Estimate, Fit, Score
 from ..fitting.equation_error import Start
-from ..fitting.print_fit import verdict_text
+from ..fitting.print_fit import doubt, verdict_text
 from ..parameters import specs, unit_text, values
 from ..records import Record
 
@@ -90,9 +92,10 @@ def _equation_error(fit: Fit, start: Start | None) -> dict[str, Any] | None:
 
 
 def as_json(
-    fit: Fit, *, command: str = "fit", command_line: str = "", version: str = "", checked: dict[str, Any] | None = None
-) -> dict[str, Any]:
-    """The whole result of ``fit``."""
+    fit: Fit, *, command: str = "fit", command_line: str = "", version: str = "", checked: dict[str, Any] | None = None,
+    causes: Sequence[Cause] = (),
+) -> dict[str, Any]:  # fmt: skip
+    """The whole result of ``fit``; ``causes`` of misfit in the record are told beside it."""
     record = fit.records[0]
     result: dict[str, Any] = {
         "schema": SCHEMA,
@@ -111,8 +114,10 @@ def as_json(
         "stages": [stage(fit)],
         "effects": sorted(fit.system.effects),
         "alternatives": [],
-        "verdict": "complete" if fit.adequate else "incomplete",
-        "verdict_text": verdict_text(fit),
+        "verdict": "complete" if fit.adequate and not causes else "incomplete",
+        "verdict_text": verdict_text(fit, causes),
+        "causes": [cause.as_json() for cause in causes],
+        "intervals_note": doubt(fit),
         "cross_check": cross_check(fit) if checked is None else checked,
         "starts": {"tried": fit.tried, "agreeing": fit.agreeing},
         "windows_tied": fit.tied,

@@ -41,12 +41,12 @@ def summarise(result: Entry) -> dict[str, Any]:
         "settled": result.get("verdict") in SETTLED,
         # The page says the verdict's word itself, so a sentence need not begin with it.
         "verdict_text": str(result.get("verdict_text") or "").removeprefix("Incomplete: ").removeprefix("Complete: "),
-        "findings": [str(sentence) for sentence in result.get("findings") or []],
+        "findings": [*_causes(result), *(str(sentence) for sentence in result.get("findings") or [])],
         "tiles": chaos_tiles(result)
         if "lyapunov" in result
         else _tiles([best_method(result)] if result.get("command") == "skeleton" else stages),
         "skeletons": skeleton_tables(result),
-        "parameters": parameter_rows(stages),
+        "parameters": parameter_rows(stages, str(result.get("intervals_note") or "")),
         "stages": stage_rows(stages) if len(stages) > 1 else [],
         "stage_heads": _stage_heads(stages),
         "scores": _scores(stages[-1]) if stages else [],
@@ -71,8 +71,20 @@ def verdict_words(entry: Entry) -> dict[str, str]:
     return {"kind": kind, "mark": mark, "text": f"{verdict}: {why}" if why else verdict}
 
 
-def parameter_rows(stages: Sequence[Entry]) -> list[dict[str, Any]]:
-    """One row per parameter of the last stage, the joint's three first, and how far each moved since the first."""
+def _causes(result: Entry) -> list[str]:
+    """Causes of misfit in the record, each a sentence with what to type."""
+    listed = [entry for entry in result.get("causes") or [] if isinstance(entry, Mapping)]
+    said = []
+    for entry in listed:
+        remedy = str(entry.get("remedy") or "")
+        way = f" {'Pass ' if remedy.startswith('--') else ''}{remedy}." if remedy else ""
+        said.append(f"A cause lies in the record: {entry.get('text')}.{way}")
+    return said
+
+
+def parameter_rows(stages: Sequence[Entry], note: str = "") -> list[dict[str, Any]]:
+    """One row per parameter of the last stage, the joint's three first, and how far each moved since the first; a ``note`` stands
+    beside every interval."""
     if not stages:
         return []
     last, first = parameters_of(stages[-1]), parameters_of(stages[0])
@@ -86,12 +98,16 @@ def parameter_rows(stages: Sequence[Entry]) -> list[dict[str, Any]]:
                 "name": name,
                 "label": LABELS.get(name) or str(entry.get("label") or name),
                 "values": [f"{number} {shown}".rstrip() for number, shown in parts(entry)],
-                "interval": format_interval(entry.get("ci95"), entry.get("stderr"), unit),
+                "interval": _noted(format_interval(entry.get("ci95"), entry.get("stderr"), unit), note),
                 "moved": _moved(first.get(name), entry) if len(stages) > 1 else "",
                 "verdict": verdict_words(entry),
             }
         )
     return rows
+
+
+def _noted(interval: str, note: str) -> str:
+    return f"{interval} ({note})" if note and interval and interval != UNKNOWN else interval
 
 
 def stage_rows(stages: Sequence[Entry]) -> list[dict[str, Any]]:
