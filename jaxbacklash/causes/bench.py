@@ -67,9 +67,7 @@ class Bench:
         w = self.problem.windows
         self._panel, self._length, self._intervals = float(w.panel), w.samples, w.intervals
         self.layout = self.cut(fit.records)[1]
-        marks = fit.score.window_times
-        apart = marks[1] - marks[0] if marks.size > 1 else self._length * self.layout.dt
-        self.group = max(1, round(float(apart) / (self._length * self.layout.dt)))
+        self.group = max(1, round(fit.score.length / (self._length * self.layout.dt)))
 
     def cut(self, records: Sequence[Record]) -> tuple[Windows, Layout]:
         """Windows of the same lengths and panels as the fit's."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from ..causes import Cause, find_causes
 from ..errors import NoAnswer
-from ..fitting.fit import SCORE_WINDOW, Fit
+from ..fitting.fit import Fit
 from ..fitting.fit import fit as fit_record
 from ..fitting.print_fit import causes_text
 from ..fitting.search import silent
@@ -23,7 +23,7 @@ def causes_first(
     model: str = "joint",
     inertia: float | None = None,
     system: System | None = None,
-    window: float = SCORE_WINDOW,
+    window: float | None = None,
     translational: bool = False,
     seed: int = 0,
     progress: Callable[[str, float], None] = silent,
