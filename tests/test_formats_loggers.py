@@ -225,6 +225,7 @@ def test_topics_stamped_by_a_simulator_keep_their_digits_beside_those_of_the_wal
         np.testing.assert_allclose(column.clock, np.arange(100) / 1000, rtol=0, atol=1e-12)
     assert "1000 elements" in table.left_out["simulated/camera"]
     assert "simulated: as stamped" in table.details["times"]
+    assert "the times of real are more than a day from the others" in table.notes[0]
 
 
 def test_universal_files_uneven_single_spectra_and_cut(tmp_path):

@@ -88,7 +88,7 @@ class Topics:
 
     def table(self, format: str, details: Mapping[str, str]) -> Table:
         """All columns, with times from the messages' own stamps where they carry one, else from when they were recorded."""
-        channels, clocks, sources = [], {}, []
+        channels, clocks, sources, apart = [], {}, [], []
         for topic, received in self.received.items():
             stamped = all(self.stamps[topic])
             clocks[topic] = self.stamps[topic] if stamped else received
@@ -99,6 +99,8 @@ class Topics:
             # Simulated times begin at 0, others in 1970: clocks that far apart are not one, and floats would lose their digits.
             own = min(clocks[topic])
             first = earliest if own - earliest < DAY else own
+            if first != earliest:
+                apart.append(topic)
             clock = np.array([time - first for time in clocks[topic]], dtype=np.float64) / NANO
             for name, values in series.items():
                 column = np.frombuffer(values, dtype=np.float64)
@@ -108,15 +110,20 @@ class Topics:
                     self.left_out[f"{topic}/{name}"] = "a single value"
                     continue
                 channels.append((topic, name, column, "", clock))
-        columns, rate = with_common_time(group_columns(channels))
-        return Table(columns, format, {**details, "times": listed(sources)}, (), rate, left_out=self.left_out)
+        columns, rate = tuple(group_columns(channels)), None
+        if not apart:
+            columns, rate = with_common_time(columns)
+        note = f"the times of {listed(apart)} are more than a day from the others: each topic is counted from its own beginning"
+        details = {**details, "times": listed(sources)}
+        return Table(columns, format, details, (note,) if apart else (), rate, left_out=self.left_out)
 
 
 def _members(message: Any) -> dict[str, Any]:
     """Fields by name, of an object of JSON or of a message class."""
     if isinstance(message, Mapping):
         return {str(name): value for name, value in message.items()}
-    return {name: getattr(message, name) for name in _names(type(message))}
+    kind: Any = type(message)
+    return {name: getattr(message, name) for name in _names(kind)}
 
 
 @functools.cache
