@@ -169,6 +169,24 @@ def test_a_comma_that_can_mark_thousands_or_decimals_is_refused(tmp_path, separa
     np.testing.assert_array_equal(read(tmp_path, content, decimal=",").columns[0].values, T)
 
 
+@pytest.mark.parametrize("counts", [COUNTS, [*range(0, 595, 5), 1234]])
+def test_counts_with_points_for_thousands_are_refused_without_a_comma_too(tmp_path, counts):
+    rows = [f"{2 * row};" + f"{count:,}".replace(",", ".") for row, count in enumerate(counts)]
+    content = "\n".join(["t;x", *rows]) + "\n"
+    with pytest.raises(BadInput, match=r'column x: found "1\.234", which can be 1234 or 1\.234.*--decimal , if it is 1234'):
+        read(tmp_path, content)
+    np.testing.assert_array_equal(read(tmp_path, content, decimal=",").columns[1].values, counts)
+    assert read(tmp_path, content, decimal=".").columns[1].values.max() < 1000
+    # Between commas they are decimal points.
+    assert read(tmp_path, content.replace(";", ",")).columns[1].values.max() < 1000
+
+
+def test_three_decimals_throughout_are_decimals(tmp_path):
+    rows = [f"{t + 1:.3f}\t{100 * x + 200:.3f}" for t, x in zip(T, X, strict=True)]
+    table = read(tmp_path, "\n".join(["t\tx", *rows]) + "\n")
+    np.testing.assert_array_equal(table.columns[0].values, np.round(T + 1, 3))
+
+
 @pytest.mark.parametrize(
     "write",
     [

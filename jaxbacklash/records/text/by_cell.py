@@ -114,7 +114,6 @@ def _mended(cells: list[str], line: str, layout: Layout) -> list[str]:
         bare = line.partition("#")[0]
         cells = bare.split() if layout.separator is None else next(csv.reader([bare], delimiter=layout.separator), [])
         cells = _trimmed(cells, width)
-    # Where the first rows all ended with separators, some may not.
     return cells
 
 
@@ -134,8 +133,12 @@ def _without_repeats(kept: list[int], rows: list[list[str]], lines: list[str], l
             dropped.add(above)
             above -= 1
     line = kept[again[0]] + layout.first_line
+    others = sorted(dropped - set(again))
+    lost = (
+        f" ({len(others)} lines above it, from line {kept[others[0]] + layout.first_line} on, are passed over)" if others else ""
+    )
     notes.append(
-        f"the header comes again at line {line}, as where logs were joined; the rows below it are appended to those above"
+        f"the header comes again at line {line}, as where logs were joined; the rows below it go on from those above{lost}"
     )
     return [row for place, row in enumerate(kept) if place not in dropped]
 

@@ -1,7 +1,9 @@
 """Cells as numbers: decimal points and commas, marks of thousands, Fortran's exponents, units behind numbers, words for none.
 
-A comma or a point inside a number means one thing in the whole file. What it means is proved by a cell that can be read in
-one way only ("0,5", "1234,5", "1.234,5"); where all can be read in two ("1,234") the column is refused, never guessed.
+What a comma or a point inside a number means is proved by a cell that can be read in one way only ("0,5", "1234,5",
+"1.234,5"), in its own column or, for commas, in another. Where all cells can be read in two ways ("1,234") the column is
+refused, never guessed. Points are decimal ones unless some of a column's numbers have three digits behind a point and all
+others are whole and below 1000, as in columns of counts with marks of thousands.
 """
 
 from __future__ import annotations
@@ -28,7 +30,7 @@ def _pattern(decimal: str, other: str) -> Callable[[str], re.Match | None]:
 
 
 _BY_POINT, _BY_COMMA = _pattern(r"\.", ","), _pattern(",", r"\.")
-_TWO_WAYS = re.compile(r"[-+]?[1-9]\d{0,2}[.,]\d{3}").fullmatch
+TWO_WAYS = re.compile(r"[-+]?[1-9]\d{0,2}(?:[.,]\d{3})+").fullmatch
 _INFINITE = re.compile(r"([-+]?)1[.,]#INF", re.IGNORECASE)
 _MARKS = {
     ".": str.maketrans("dD", "ee", ",'\u2019 \u00a0\u2009\u202f"),
@@ -49,7 +51,8 @@ class Cells:
     """The cells of one column, tidied: stripped of blanks and quotes, `_NAN` for none, and what its marks can mean.
 
     ``point`` and ``comma`` say whether all can be read with that decimal mark; ``doubtful`` is a row that can be read in two
-    ways, ``proof`` the marks that some cell proves to be the decimal one.
+    ways, ``proof`` the marks that some cell proves to be the decimal one, ``small`` whether cells without a mark are there and
+    all below 1000.
     """
 
     texts: Sequence[str]
@@ -58,6 +61,7 @@ class Cells:
     comma: bool = False
     doubtful: int | None = None
     proof: frozenset[str] = frozenset()
+    small: bool = False
 
     def values(self, decimal: str) -> np.ndarray:
         """The numbers, read with a decimal mark."""
@@ -66,7 +70,11 @@ class Cells:
 
 
 def read_numbers(
-    columns: Sequence[Sequence[str]], names: Sequence[str], decimal: str | None, place: Callable[[int], str]
+    columns: Sequence[Sequence[str]],
+    names: Sequence[str],
+    decimal: str | None,
+    place: Callable[[int], str],
+    grouping: bool = True,
 ) -> tuple[list[np.ndarray], list[str], list[str], str]:
     """Columns of cells as numbers where they are numbers.
 
@@ -80,6 +88,8 @@ def read_numbers(
         "." or "," as the user said; decides only what can be read in two ways.
     place : callable
         Names a row (from 0) for messages: the file and the line.
+    grouping : bool
+        Whether a point may mark thousands: not where commas separate the cells.
 
     Returns
     -------
@@ -108,15 +118,17 @@ def read_numbers(
     if len(done) < len(columns):
         # What points mean in a column that NumPy can read may still be shown by the commas of another.
         commas = any("," in text for number, texts in enumerate(columns) if number not in done for text in texts)
-        for number in [number for number in cells if number not in done or commas]:
-            cells[number] = judged(columns[number])
+    else:
+        commas = False
+    for number in [number for number in cells if number not in done or commas or (grouping and _may_group(columns[number]))]:
+        cells[number] = judged(columns[number])
     proof = frozenset().union(*(column.proof for column in cells.values()))
     marks = []
     for number, column in cells.items():
         # Counts of nanoseconds since 1970 stay text, for `times.seconds`: double precision would round them to 256.
         if not (column.point or column.comma) or LONG.fullmatch(column.texts[0]):
             continue
-        mark = _decide(column, proof, decimal, functools.partial(_place, place, names[number]))
+        mark = _decide(column, proof, decimal, grouping, functools.partial(_place, place, names[number]))
         done[number] = column.values(mark) if number not in done or mark == "," else done[number]
         if any("." in text or "," in text for text in column.texts):
             marks.append(mark)
@@ -127,6 +139,12 @@ def read_numbers(
     for number in sorted(set(cells) & set(done)):
         notes += _absent(columns[number], values[number], names[number], place)
     return values, units, notes, max(set(marks), key=marks.count, default=".")
+
+
+def _may_group(texts: Sequence[str]) -> bool:
+    """Whether the first cells with points may all be marked by thousands."""
+    pointed = [text for text in texts if "." in text]
+    return all(TWO_WAYS(text.strip()) for text in pointed[:SAMPLE])
 
 
 def _direct(texts: Sequence[str]) -> np.ndarray | None:
@@ -171,21 +189,23 @@ def judged(texts: Sequence[str]) -> Cells:
     tidy[:] = [_INFINITE.sub(r"\1inf", text) for text in tidy] if any("#" in text for _, text in filled) else tidy
     proof = set()
     doubtful = None
+    whole = [len(text.lstrip("+-")) for _, text in filled if "," not in text and "." not in text]
     for row, text in filled:
         if "," not in text and "." not in text:
             continue
         by_point, by_comma = _BY_POINT(text), _BY_COMMA(text)
         if by_point and by_comma:
-            doubtful = row if doubtful is None and _TWO_WAYS(text) else doubtful
+            doubtful = row if doubtful is None and TWO_WAYS(text) else doubtful
         elif by_comma:
             proof.add(",")
         elif by_point:
             proof.add(".")
     # Columns are judged one by one: a program may write times with a point and values with a comma.
-    return Cells(tidy, point=point, comma=comma, doubtful=doubtful, proof=frozenset(proof))
+    small = bool(whole) and max(whole) <= 3
+    return Cells(tidy, point=point, comma=comma, doubtful=doubtful, proof=frozenset(proof), small=small)
 
 
-def _decide(column: Cells, proof: frozenset[str], decimal: str | None, place: Callable[[int], str]) -> str:
+def _decide(column: Cells, proof: frozenset[str], decimal: str | None, grouping: bool, place: Callable[[int], str]) -> str:
     """The decimal mark of a column, or the refusal of one that can be read in two ways."""
     if column.doubtful is None or not (column.point and column.comma):
         return "." if column.point else ","
@@ -195,7 +215,7 @@ def _decide(column: Cells, proof: frozenset[str], decimal: str | None, place: Ca
     mark = "," if "," in text else "."
     grouped = "," if mark == "." else "."
     # A comma that is the decimal mark elsewhere is so here; a comma that marks thousands elsewhere likewise.
-    if mark == "." and "," not in proof:
+    if mark == "." and "," not in proof and not (column.small and grouping):
         return "."
     if mark == "," and "," in proof and "." not in proof:
         return ","

@@ -13,7 +13,7 @@ import numpy as np
 
 from .cells import MISSING, NUMBER, split
 from .layout import Layout
-from .numbers import LONG, Cells, judged
+from .numbers import LONG, TWO_WAYS, Cells, judged
 from .opening import last_line
 
 CHUNK = 2**18
@@ -53,7 +53,7 @@ def read_plain(layout: Layout, decimal: str | None) -> tuple[np.ndarray, str, np
             consecutive = last_line(file) == layout.first_line + len(values) - 1
     except ValueError:
         return None
-    if values.shape[1] != len(layout.names):
+    if values.shape[1] != len(layout.names) or (layout.separator != "," and _may_group(layout, values, comma, decimal)):
         return None
     return values, "," if comma else ".", None if consecutive else _line_numbers(layout, len(values))
 
@@ -84,6 +84,22 @@ def _is_decimal_comma(layout: Layout, decimal: str | None) -> bool:
     columns: list[Cells] = [judged(column) for column in zip(*rows, strict=False)]
     proved = any("," in column.proof for column in columns) or decimal == ","
     return proved and decimal != "." and not any("." in column.proof for column in columns)
+
+
+def _may_group(layout: Layout, values: np.ndarray, comma: bool, decimal: str | None) -> bool:
+    """Whether a column may hold counts with points for marks of thousands: `numbers` looks at every cell then.
+
+    So it is where the first cells are whole or have three digits behind the point, and not all numbers of the column are whole.
+    """
+    if comma:
+        return False
+    rows = zip(*(split(line, layout.separator) for line in layout.sample), strict=False)
+    for column, numbers in zip(rows, values.T, strict=False):
+        pointed = [cell for cell in column if "." in cell]
+        doubtful = all(map(TWO_WAYS, pointed)) and (decimal == "," or len(pointed) < len(column))
+        if doubtful and not np.array_equal(numbers, np.round(numbers)):
+            return True
+    return False
 
 
 def _line_numbers(layout: Layout, rows: int) -> np.ndarray | None:

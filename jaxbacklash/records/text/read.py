@@ -62,7 +62,7 @@ def read_text(path: Path, skip: int = 0, decimal: str | None = None) -> Table:
         def place(row: int) -> str:
             return f"{path} line {numbers[row]}"
 
-        columns, behind, also, mark = read_numbers(cells, layout.names, decimal, place)
+        columns, behind, also, mark = read_numbers(cells, layout.names, decimal, place, layout.separator != ",")
         units = [unit or other for unit, other in zip(units, behind, strict=True)]
         notes += more + also
         if np.array_equal(lines, np.arange(layout.first_line, layout.first_line + lines.size)):
