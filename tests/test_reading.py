@@ -196,3 +196,22 @@ def test_counts_that_were_scaled_are_unwrapped_by_a_whole_counter():
     record, _ = read(source, scales={"x": count}, unwrap=frozenset("x"))
     miss = record.channels["x"] - X
     assert np.ptp(miss) < 1.01 * count
+
+
+def test_a_code_for_a_failed_reading_is_no_sign_of_degrees():
+    z = Z.copy()
+    z[[400, 900]] = 1e6
+    _, said = read(named(t=T, x=X, z=z))
+    assert any("rows 401 and 901" in one for one in said)
+
+
+def test_three_axes_of_a_sensor_are_no_degrees():
+    told = refusal(named(t=T, x=3.0 * np.sin(20.0 * T), y=2.0 * np.sin(31.0 * T), z=9.81 + 3.0 * np.sin(44.0 * T)))
+    assert "accelerometer" in str(told)
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(180.0 / np.pi, "x=deg"), (0.5 / np.pi, "x=rev")])
+def test_a_base_in_another_unit_than_the_link_is_told_by_the_unit(factor, unit):
+    slow = 0.1 * np.sin(5.0 * T) + 0.05 * np.sin(11.0 * T) + 3e-5 * RNG.standard_normal(N)
+    told = refusal(named(t=T, x=factor * slow, y=slow + 1e-3 * np.sin(60.0 * T)))
+    assert told.remedy == f"--unit {unit}"

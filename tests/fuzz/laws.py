@@ -32,7 +32,7 @@ BODIES = (
 FILES = (
     "", "x = 3\n", "def f(:\n", "import no_such_module\n", "raise RuntimeError('no')\n", "import sys\nsys.exit(0)\n",
     "import sys\nsys.exit(5)\n", "1 / 0\n",
-    "raise SystemExit\n", "raise KeyboardInterrupt\n", "print('hello')\n", "import os\nos._exit(3) if False else None\n", "\0",
+    "raise SystemExit\n", "raise KeyboardInterrupt\n", "import os\nos._exit(3) if False else None\n", "\0",
     "import jaxbacklash as jb\nclass Mine(jb.AbstractEffect):\n    pass\n",
     "from __future__ import annotations\n" + HEAD + LAW.format(body="self.a * now.y"),
     HEAD + LAW.format(body="self.a * now.y").replace("N m", "N\\nm"),

@@ -73,7 +73,7 @@ def _ending(case: Case, run: Run) -> list[str]:
         return [f"exit code {run.code}: {run.err[-200:]}"]
     lines = [line for line in run.err.splitlines() if line.strip() and not line.startswith("warning:")]
     complaints = []
-    if len(lines) != 1 and not case.silent:
+    if len(lines) != 1 and case.words and not case.silent:  # without a word it answers with its help
         complaints.append(f"{len(lines)} sentences: {run.err[-300:]!r}")
     if run.out.strip() and run.code == 2:
         complaints.append(f"text on stdout beside a refusal: {run.out[:100]!r}")

@@ -50,6 +50,8 @@ def find(
     if not channels:
         return []
     found = quantities.quantities(channels, options, units_stated)
+    if any(one.kind == "degrees" for one in found) and (other := relations.instead_of_degrees(channels, extras)):
+        found = [*(one for one in found if one.kind != "degrees"), *other]
     # What one check finds would set off the next: a code stands out, a wrap shifts, and neither follows anything. So a channel is
     # looked at further once it is mended, and the whole record once no channel waits for an answer.
     for checks in (jumps.known_wraps, spikes.codes, jumps.wraps, held.held, spikes.spikes):

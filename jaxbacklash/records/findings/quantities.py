@@ -11,6 +11,7 @@ from jaxbacklash.records.finding import ASK, Finding
 from jaxbacklash.records.options import ReadOptions
 
 from .local import POSITIONS
+from .spikes import bad_rows
 
 MAX_RELATIVE_RAD = 1.0
 """The relative motion of a loose joint is its play and the give of its contact. Over 1 rad (57 degrees) to one side of its middle
@@ -53,6 +54,10 @@ def degrees(channels: Mapping[str, np.ndarray], stated: Collection[str]) -> list
     if "x" in channels:
         suspects["x"] = (_peak(channels["x"]), MAX_BASE_RAD)
     beyond = [name for name, (peak, most) in suspects.items() if peak > most and name not in stated]
+    # A sample that was never measured is no motion; looking for those takes time, so only here.
+    suspects |= {name: (_peak(np.delete(channels[name], bad_rows(channels[name]))),
+        suspects[name][1]) for name in beyond if name != "y"}
+    beyond = [name for name in beyond if suspects[name][0] > suspects[name][1]]
     if not beyond:
         return []
     name = beyond[0]

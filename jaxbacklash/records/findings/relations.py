@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
+from fractions import Fraction
 
 import numpy as np
 
@@ -25,6 +26,11 @@ FLAT = 1.25
 """Largest ratio of the gains of two octaves: above a resonance they differ by four, near one by more than this."""
 LIKE_ONE = 1.3
 """Gains between 1/1.3 and 1.3 are how a link follows its base."""
+NEAR = 0.015
+"""Share by which the factor of slow motion may miss the true one: near a resonance the link already follows a little more."""
+UNITS = {180.0 / np.pi: "x=deg", np.pi / 180.0: "y=deg", 0.5 / np.pi: "x=rev", 2.0 * np.pi: "y=rev", 1e3: "x=mrad",
+    1e-3: "y=mrad"}
+"""What x over y is where one of the two is in another unit."""
 GOES_WITH, AGAINST = 0.75, 0.4
 """Coherence from which on, and lag from -x [rad] up to which, z goes against x; play in the joint keeps it from more."""
 GROWS = (1.5, 8.0)
@@ -46,6 +52,12 @@ def relations(channels: Mapping[str, np.ndarray], extras: Mapping[str, np.ndarra
     if y is not None and "y" in channels:
         return _following(x, y)
     return _taken_for_y(x, z) or _turned(x, z) if z is not None else []
+
+
+def instead_of_degrees(channels: Mapping[str, np.ndarray], extras: Mapping[str, np.ndarray]) -> list[Finding]:
+    """What explains too large a motion better than degrees in all channels: three axes of one sensor, or two units."""
+    found = relations(channels, extras)
+    return [one for one in found if one.kind == "axes" or (one.kind == "gear" and one.remedy.startswith("--unit"))]
 
 
 def _three(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> list[Finding]:
@@ -76,8 +88,15 @@ def _following(x: np.ndarray, y: np.ndarray) -> list[Finding]:
         return [Finding("sign", ASK, "y", what, "--sign y", size=gain)]
     ratio = 1.0 / gain
     whole = round(ratio) if abs(ratio) > 1.5 and abs(ratio / round(ratio) - 1) < 0.1 else ratio
+    simple = float(Fraction(abs(ratio)).limit_denominator(4)) * np.sign(ratio)  # 5:2, 4:3
+    if abs(ratio - simple) < NEAR * abs(ratio):
+        whole = simple
     what = f"follows x at {gain:.3g} in slow motion, as behind a gear or in another unit"
-    return [Finding("gear", ASK, "y", what, f"--ratio {whole:.3g}", size=gain)]
+    gear = f"--ratio {whole:.4g}"
+    unit = next((said for per_radian, said in UNITS.items() if abs(ratio / per_radian - 1.0) < NEAR), "")
+    if unit:
+        return [Finding("gear", ASK, "y", what, f"--unit {unit}", size=gain, otherwise=gear)]
+    return [Finding("gear", ASK, "y", what, gear, size=gain)]
 
 
 def _taken_for_y(x: np.ndarray, z: np.ndarray) -> list[Finding]:
