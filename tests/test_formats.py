@@ -11,7 +11,7 @@ import pytest
 from scipy import io, sparse
 
 from jaxbacklash.errors import BadInput
-from jaxbacklash.records.formats import reader_for
+from jaxbacklash.records.formats import guard, reader_for
 from jaxbacklash.records.table import Table
 
 RNG = np.random.default_rng(5)
@@ -231,11 +231,46 @@ def test_sparse_matrices(tmp_path, newer):
     assert "(1000000, 1000000)" in table.left_out["big"] or newer
 
 
-def test_a_variable_that_claims_terabytes_is_refused(tmp_path):
-    io.savemat(tmp_path / "rec.mat", {"x": np.zeros((500, 1))})
-    data = (tmp_path / "rec.mat").read_bytes()
-    (tmp_path / "rec.mat").write_bytes(data.replace(struct.pack("<ii", 500, 1), struct.pack("<ii", 2**30, 5000)))
-    refused(tmp_path / "rec.mat", "array x", "GB", "shorter record")
+def test_a_variable_that_claims_terabytes_or_unpacks_to_too_much_is_refused(tmp_path, monkeypatch):
+    path = tmp_path / "rec.mat"
+    io.savemat(path, {"x": np.zeros((500, 1))})
+    path.write_bytes(path.read_bytes().replace(struct.pack("<ii", 500, 1), struct.pack("<ii", 2**30, 5000)))
+    refused(path, "damaged or no MATLAB file")
+    io.savemat(path, {"t": T, "log": {"x": np.zeros(10**6)}}, do_compression=True)
+    assert path.stat().st_size < 20_000
+    assert table_of(path).names == ["t", "x"]
+    monkeypatch.setattr(guard, "MAX_BYTES", 10**6)
+    refused(path, "a packed array", "GB", "shorter record")
+
+
+def test_variables_packed_and_not_packed_in_one_file(tmp_path):
+    io.savemat(tmp_path / "plain.mat", {"t": T, "log": {"x": X}})
+    io.savemat(tmp_path / "packed.mat", {"z": Z}, do_compression=True)
+    plain, packed = ((tmp_path / name).read_bytes() for name in ("plain.mat", "packed.mat"))
+    (tmp_path / "rec.mat").write_bytes(plain + packed[128:])
+    holds(table_of(tmp_path / "rec.mat"), t=T, x=X, z=Z)
+    (tmp_path / "rec.mat").write_bytes(packed + plain[128:])
+    holds(table_of(tmp_path / "rec.mat"), t=T, x=X, z=Z)
+
+
+@pytest.mark.parametrize("kind", [0, 8, 10, 11, 19, 20, 255, 8457, 14, 15])
+def test_elements_of_a_kind_that_does_not_exist_never_reach_the_library(tmp_path, kind):
+    """SciPy looks such a kind up in a table that ends before it, and the process with it."""
+    io.savemat(tmp_path / "rec.mat", {"log": {"x": X[:, None]}})
+    data = bytearray((tmp_path / "rec.mat").read_bytes())
+    place = data.index(struct.pack("<II", 9, 3200))
+    data[place : place + 4] = struct.pack("<I", kind)
+    (tmp_path / "rec.mat").write_bytes(data)
+    refused(tmp_path / "rec.mat", "damaged or no MATLAB file")
+
+
+def test_places_out_of_range_in_a_sparse_matrix_are_refused(tmp_path):
+    io.savemat(tmp_path / "rec.mat", {"x": sparse.csc_matrix(X[:, None])})
+    data = bytearray((tmp_path / "rec.mat").read_bytes())
+    place = data.index(struct.pack("<iii", 1, 2, 3))
+    data[place : place + 12] = struct.pack("<iii", 2**30, 5, -7)
+    (tmp_path / "rec.mat").write_bytes(data)
+    refused(tmp_path / "rec.mat", "damaged or no MATLAB file")
 
 
 def test_half_a_file_of_every_kind(tmp_path):

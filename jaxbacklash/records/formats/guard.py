@@ -102,6 +102,11 @@ class Budget:
     def __init__(self, where: str) -> None:
         self.where, self.taken = where, 0
 
+    @property
+    def left(self) -> int:
+        """Bytes that may still be taken."""
+        return max(MAX_BYTES - self.taken, 0)
+
     def take(self, size: int, name: str) -> None:
         """Allow for an array of ``size`` bytes. Raises `BadInput` where all together would be more than `MAX_BYTES`."""
         self.taken += size

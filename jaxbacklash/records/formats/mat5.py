@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .guard import MAX_BYTES, Budget
+from .guard import MAX_BYTES
+from .mat5_tags import checked
 from .mat_tree import Instance, Tree, Unread
 
-ITEM_BYTES = {"single": 4, "logical": 1, "int8": 1, "uint8": 1, "int16": 2, "uint16": 2, "int32": 4, "uint32": 4}
 OPAQUE_NAME = "None"
 """What SciPy calls a variable that holds a value of a class."""
 
@@ -20,16 +19,8 @@ def read_tree(path: Path) -> Tree:
     """The variables of the file; raises whatever SciPy does on a damaged one."""
     from scipy import io  # a tenth of a second to import, and few records need it
 
-    budget = Budget(str(path))
-    # SciPy cannot list files that hold values of classes.
-    with contextlib.suppress(TypeError):
-        for name, shape, kind in io.whosmat(path):
-            count = 1
-            for length in shape:
-                count *= int(length)
-            if kind != "sparse":
-                budget.take(count * ITEM_BYTES.get(kind, 8), f"array {name}")
-    variables = io.loadmat(path)
+    source = checked(path)
+    variables = io.loadmat(source)
     return {name: plain(value) for name, value in variables.items() if not name.startswith("__")}
 
 
@@ -38,6 +29,7 @@ def plain(value: Any) -> Any:
     if hasattr(value, "toarray"):  # a sparse matrix; of 1e9 by 1e9 with one number it would fill the memory
         if value.shape[0] * value.shape[1] * 8 > MAX_BYTES:
             return Unread(f"a sparse matrix of shape {value.shape}")
+        value.check_format(full_check=True)  # places out of range would be written to
         return value.toarray()
     if not isinstance(value, np.ndarray):
         return value

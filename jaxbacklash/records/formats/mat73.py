@@ -98,7 +98,9 @@ def _sparse(item: Any, budget: Budget) -> Any:
     budget.take(rows * columns * 8, f"array {item.name}")
     if "data" not in item:  # all zeros
         return np.zeros((rows, columns))
-    return csc_matrix((item["data"][()], item["ir"][()], item["jc"][()]), shape=(rows, columns)).toarray()
+    matrix = csc_matrix((item["data"][()], item["ir"][()], item["jc"][()]), shape=(rows, columns))
+    matrix.check_format(full_check=True)  # places out of range would be written to
+    return matrix.toarray()
 
 
 def refers_elsewhere(path: Path) -> bool:
