@@ -606,3 +606,17 @@ def test_the_file_says_how_it_was_read(tmp_path):
         "lines passed over": "1 to 11",
     }
     assert any("lines 1 to 11 above the table are passed over" in note for note in table.notes)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        "This is a letter.\nIt holds no table, and on 3 May 2025 it was written.\n" * 20,
+        "Read me\n\nThe scripts estimate a model (from position,\nvelocity 1, 2).\nIt was\nmade\nby us\nand them\nall\n",
+        "<html><body>\n<p>no</p>\n</body></html>\n",
+        '[{"t": 0, "x": 1},\n{"t": 1, "x": 2}]\n',
+    ],
+)
+def test_prose_is_no_table(tmp_path, content):
+    with pytest.raises(BadInput, match=r"no table of numbers|no values below it"):
+        read(tmp_path, content)

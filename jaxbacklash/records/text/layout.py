@@ -102,7 +102,7 @@ def find_layout(source: Source, skip: int) -> Layout:
     """
     where = str(source.path)
     head, run = _look(source, skip)
-    if run is None:
+    if run is None or _is_prose(head, run):
         raise _no_table(head, where, skip)
     first = _beginning(head, run, where)
     run = dataclasses.replace(run, first=first)
@@ -169,6 +169,18 @@ def _mark(separator: str) -> str | None:
     return None if separator == " " else separator
 
 
+FEWEST_ROWS, LEAST_SHARE = 10, 0.1
+"""Fewer rows than this, and less than this share of all lines, are numbers in a text, such as its date or its chapters."""
+
+
+def _is_prose(head: Head, run: Run) -> bool:
+    """Whether lines with numbers are lost among others that are no preamble of theirs."""
+    lines = [index for index in range(len(head.lines)) if not head.passed(index, run.separator)]
+    rows = sum(run.first <= index <= run.last for index in lines)
+    below = sum(index > run.last for index in lines)
+    return rows < FEWEST_ROWS and (rows < LEAST_SHARE * len(lines) or below > max(3, rows))
+
+
 def _no_table(head: Head, where: str, skip: int) -> BadInput:
     """The refusal of a file in which no line holds a value."""
     kept = [line for line in head.lines if not line.blank]
@@ -182,7 +194,7 @@ def _no_table(head: Head, where: str, skip: int) -> BadInput:
     shown = " ".join(kept[-1].text.split())[:60]
     return wrong(
         where,
-        f'no line of numbers{after} in the first {len(head.lines)} lines, the last of which is "{shown}"',
+        f'no table of numbers{after} in the first {len(head.lines)} lines, the last of which is "{shown}"',
         "one line of numbers per sample",
     )
 
