@@ -9,7 +9,7 @@ import numpy as np
 
 from ..records import MeasuredSeries
 from ..timeseries import ChaosReport
-from ..timeseries.print_report import drift_words
+from ..timeseries.print_report import drift_words, why_wide
 from .result import SCHEMA, finite
 
 
@@ -22,9 +22,12 @@ def chaos_json(found: ChaosReport, source: MeasuredSeries, *, command_line: str 
         "command_line": command_line,
         "version": version,
         "record": {
-            "path": source.path, "samples": int(source.t.size), "rate_hz": 1.0 / dt, "duration_s": source.t.size * dt,
+            "path": source.path, "samples": int(source.t.size), "rate_hz": 1.0 / source.dt,
+            "duration_s": source.t.size * source.dt,
             "channels": ["t", *([source.drive_name] if source.drive_name else []), source.name], "channel": source.name,
         },
+        "used": {"samples": int(found.series.size), "rate_hz": 1.0 / dt, "text": found.shortened},
+        "drift": _drift(found),
         "delay_samples": found.delay.samples,
         "delay_s": found.delay.samples * dt,
         "delay_why": found.delay.why,
@@ -56,6 +59,8 @@ def choices(found: ChaosReport) -> list[tuple[str, str]]:
     """What was chosen, and why, for the table of a page."""
     dt, raw = found.dt, found.raw_dimension
     rows = [
+        *([("used", found.shortened)] if found.shortened else []),
+        *([("drift", found.drift.text)] if found.drift.text else []),
         ("delay", f"{found.delay.samples} samples, {found.delay.samples * dt:.4g} s: {found.delay.why}"),
         ("Theiler window", f"{found.theiler} samples: a swing takes {found.period:.4g}"),
         ("embedding dimension", f"{_words(raw.cao)} by Cao's E1, {_words(raw.false_neighbours)} by false nearest neighbours"),
@@ -122,6 +127,7 @@ def _lyapunov(found: ChaosReport) -> dict[str, Any]:
     value, interval = found.lyapunov, found.interval
     entry: dict[str, Any] = {
         "value": finite(value),
+        "widened": why_wide(found),
         "ci95": None if interval is None else [finite(end) for end in interval],
         "unit": "1/s",
         "per_period": None,
@@ -135,6 +141,16 @@ def _lyapunov(found: ChaosReport) -> dict[str, Any]:
     if found.drive_period is None:
         return entry | {"per_period_why": found.why_no_period}
     return entry | {"per_period": value * found.drive_period, "drive_period_s": found.drive_period}
+
+
+def _drift(found: ChaosReport) -> dict[str, Any]:
+    """What changes slowly in the series, and what was done about it."""
+    one = found.drift
+    return {
+        "kind": one.kind, "removed": one.removed, "degree": one.degree if one.removed else None, "change": finite(one.change),
+        "at_sample": one.at, "size_factor": finite(one.factor), "dickey_fuller": finite(one.unit_root),
+        "dickey_fuller_1_percent": finite(one.bound), "text": one.text,
+    }  # fmt: skip
 
 
 def _driven(found: ChaosReport) -> dict[str, Any]:

@@ -6,6 +6,8 @@ from .correlation import Correlation as Correlation
 from .correlation import correlation as correlation
 from .dimension import Dimension as Dimension
 from .dimension import embedding_dimension as embedding_dimension
+from .drift import Drift as Drift
+from .drift import find_drift as find_drift
 from .driven import Driven as Driven
 from .driven import driven_exponent as driven_exponent
 from .embedding import embed as embed

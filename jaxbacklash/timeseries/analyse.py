@@ -10,6 +10,7 @@ import numpy as np
 from ..errors import BadInput
 from .correlation import Correlation, correlation
 from .dimension import Dimension, embedding_dimension
+from .drift import Drift, find_drift
 from .driven import Driven, driven_exponent
 from .exponent import Exponent, largest_exponent
 from .mutual_information import Delay, choose_delay
@@ -23,10 +24,15 @@ from .verdict import STEADY, Verdict, judge, judge_driven
 from .zero_one import ZeroOne, zero_one
 
 SHORTEST = 500
+LONGEST = 50000  # of a longer series every few samples are taken where it is sampled finely, and then its middle
+STRAIGHT = 1e-3  # share of its step by which a time that is rounded in the file may differ from a straight line
+PLENTY = 60.0  # samples a swing that are left where only every few are taken
+LARGEST, SMALLEST = 1e100, 1e-100  # sizes whose squares and products are still numbers
 CLEANED_SAMPLES = 20000  # of a longer series the middle is cleaned
 WORTH_IT_DB = 2.0  # the gain is estimated to 2.5 dB (benchmarks.chaos_noise_reduction)
 FINE = 8.0  # samples a swing from which on a series counts as a flow's
 SWING_SHARE = 0.35  # of a swing that the noise reduction's vectors span
+COARSE = 40.0  # samples a swing below which the fifteen coordinates that noise is taken off with span more than that share
 
 Tell = Callable[[str, float], None]
 
@@ -38,6 +44,8 @@ class ChaosReport:
     Exponents are per sample inside ``exponent`` and ``raw_exponent``; the properties give them per second. ``series`` is the
     standardised series, ``cleaned`` its noise reduction (of the middle `CLEANED_SAMPLES` of a long series), which counts only
     where ``uses_cleaned``. ``drive_period`` [s] is None, with ``why_no_period``, for a record without a drive that repeats.
+    ``shortened`` says what was used of a long series, None where all was; ``dt`` is the time between samples used.
+    ``drift`` is what was found before all else; where it was ``removed``, ``series`` is what is left.
     ``driven`` is the growth under the measured drive, None without one; where ``conditional``, verdict and exponent are its.
     """
 
@@ -67,6 +75,8 @@ class ChaosReport:
     driven: Driven | None
     conditional: bool
     seed: int
+    drift: Drift
+    shortened: str | None
 
     @property
     def lyapunov(self) -> float | None:
@@ -108,7 +118,7 @@ def chaos(
     surrogates : "iaaft", "aaft" or "fourier"
     count : how many; with 39 the least p-value is 0.025
     clean : take noise off too, for the dimension and a less biased exponent; the verdict never rests on it alone
-    seed : of everything random: surrogates, reference points
+    seed : of everything random: surrogates, reference points; 0 or more
     progress : told (stage, share done)
 
     Returns
@@ -118,11 +128,16 @@ def chaos(
     Raises
     ------
     BadInput
-        The series is too short, constant, or not finite.
+        The series is too short, constant, a straight line such as the time, not finite, or too large to be squared.
     """
-    series, dt = _checked(series, dt, count, surrogates)
+    series, dt = _checked(series, dt, count, surrogates, seed)
     tell = progress or (lambda stage, share: None)
     rng = np.random.default_rng(seed)
+    measured = series
+    tell("looking for a drift", 0.0)
+    drift = find_drift(series)
+    series, stride, shortened = _shortened(drift.steady, drive is not None)
+    dt_measured, dt = dt, dt * stride
     mean, deviation = float(series.mean()), float(series.std())
     series = (series - mean) / deviation
 
@@ -142,13 +157,13 @@ def chaos(
     walk = zero_one(series, max(1, delay.samples), rng)
     raw_curve = stretching(series, m, delay.samples, theiler, period, rng)
     company = kept_company(series, m, delay.samples, theiler, rng)
-    drive_period, why = _drive_period(drive, series.size, dt)
+    drive_period, why = _drive_period(drive, measured.size, dt_measured)
     driven = None
     if drive is not None:
         tell("fitting the law of motion", 0.56)
-        across = mean + deviation * series if motion is None else np.asarray(motion, dtype=float)
+        across = measured if motion is None else np.asarray(motion, dtype=float)
         driven = driven_exponent(across, np.asarray(drive, dtype=float), period, rng)
-    verdict = judge(raw_exponent, tested, raw_curve, walk, series.size, period, company)
+    verdict = judge(raw_exponent, tested, raw_curve, walk, series.size, period, company, drift)
     recurs = drive_period is not None and company <= STEADY and verdict.word != "undecided"
     conditional = driven is not None and driven.value is not None and not recurs
     if conditional and driven is not None:
@@ -167,6 +182,8 @@ def chaos(
             working = (cleaned.series - cleaned.series.mean()) / cleaned.series.std()
             tell("fitting local maps", 0.84)
             exponent = largest_exponent(working, delay.samples, theiler, rng) or raw_exponent
+            if period < COARSE and exponent is not None and raw_exponent is not None:
+                exponent = exponent.with_shift(exponent.value - raw_exponent.value)
             curve = stretching(working, m, delay.samples, theiler, period, rng)
     tell("correlation sums", 0.92)
     highest = range(2, min(m + 3, 8) + 1)
@@ -178,11 +195,11 @@ def chaos(
     return ChaosReport(
         series, dt, mean, deviation, period, delay, theiler, raw_dimension, cleaned_dimension, cleaned, by_average, uses_cleaned,
         raw_exponent, exponent, curve, found, raw_correlation, tested, walk, verdict, none,
-        drive_period, why, driven, conditional, seed,
+        drive_period, why, driven, conditional, seed, drift, shortened,
     )  # fmt: skip
 
 
-def _checked(series: np.ndarray, dt: float, count: int, surrogates: str) -> tuple[np.ndarray, float]:
+def _checked(series: np.ndarray, dt: float, count: int, surrogates: str, seed: int) -> tuple[np.ndarray, float]:
     series = np.asarray(series, dtype=float)
     if series.ndim != 1:
         raise BadInput(f"the series: found an array of shape {series.shape}, wanted one value per sample")
@@ -190,8 +207,21 @@ def _checked(series: np.ndarray, dt: float, count: int, surrogates: str) -> tupl
         raise BadInput(f"the series: found {series.size} samples, wanted at least {SHORTEST} to tell chaos from anything")
     if not np.all(np.isfinite(series)):
         raise BadInput(f"the series: found {series[~np.isfinite(series)][0]}, wanted a finite number in every row")
-    if not series.std() > 1e-12 * np.abs(series).max():
+    largest = float(np.abs(series).max())
+    if largest > LARGEST or 0.0 < largest < SMALLEST:
+        raise BadInput(
+            f"the series: found values up to {largest:.3g}, wanted at most {LARGEST:g} and at least {SMALLEST:g}: convert them"
+        )
+    if not series.std() > 1e-12 * largest:
         raise BadInput("the series: found a constant, wanted a motion")
+    steps = np.diff(series)
+    if np.abs(steps - steps.mean()).max() < STRAIGHT * abs(steps.mean()):
+        raise BadInput(
+            f"the series: found a straight line that changes by {steps.mean():.6g} from row to row, as a time or a counter does, "
+            "wanted a motion"
+        )
+    if seed < 0:
+        raise BadInput(f"the seed: found {seed}, wanted 0 or a larger whole number")
     if not (np.isfinite(dt) and dt > 0.0):
         raise BadInput(f"the time between samples: found {dt}, wanted a positive number of seconds")
     if surrogates not in KINDS:
@@ -199,6 +229,22 @@ def _checked(series: np.ndarray, dt: float, count: int, surrogates: str) -> tupl
     if count < 19:
         raise BadInput(f"surrogates: found a count of {count}, wanted at least 19, or no p-value can reach 0.05")
     return series, float(dt)
+
+
+def _shortened(series: np.ndarray, driven: bool) -> tuple[np.ndarray, int, str | None]:
+    """What is used of a series with more than `LONGEST` samples: the samples, every how many, and a sentence that says so.
+
+    A driven one keeps its steps, since its drive is looked at beside it.
+    """
+    if series.size <= LONGEST:
+        return series, 1, None
+    stride = 1 if driven else max(1, min(int(mean_period(series[: 4 * LONGEST]) / PLENTY), -(-series.size // LONGEST)))
+    used = series[::stride]
+    first = (used.size - min(used.size, LONGEST)) // 2
+    used = used[first : first + LONGEST]
+    every = "all samples" if stride == 1 else f"every {stride}th sample"
+    where = f"from sample {first * stride} to {(first + used.size - 1) * stride}"
+    return used, stride, f"of {series.size} samples {every} {where} are used, {used.size} in all; drift was sought in all"
 
 
 def clean_series(series: np.ndarray, period: float) -> tuple[Cleaned, Cleaned]:

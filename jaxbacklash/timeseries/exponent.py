@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,12 +18,15 @@ PREDICTS = 0.7  # prediction error above which the maps say nothing of the dynam
 SYSTEMATIC = 0.05  # what no resampling sees, as a share of the exponent: coverage is measured by benchmarks.chaos_literature
 STRETCHES = 24
 NORMAL_95 = 1.96
+WIDER = 1.2  # from which factor on it is said that, and why, an interval is wider than the scatter of the series makes it
 
 
 @dataclass(frozen=True, eq=False)
 class Exponent:
     """Largest exponent per sample: ``value``, 95 % ``interval``, ``stderr``; ``error`` the prediction error of the best map
-    [standard deviations]; ``maps`` used, ``values`` of each, and all that were ``tried``."""
+    [standard deviations]; ``maps`` used, ``values`` of each, and all that were ``tried``. ``bend`` is by how much the best map's
+    value changes with twice the neighbours, ``shift`` by how much it changed when noise was taken off a coarse series: parts of
+    ``stderr`` that no resampling shows."""
 
     value: float
     stderr: float
@@ -31,6 +35,18 @@ class Exponent:
     maps: tuple[LocalMap, ...]
     values: tuple[float, ...]
     tried: tuple[LocalMap, ...]
+    bend: float = 0.0
+    shift: float = 0.0
+
+    @property
+    def widened(self) -> bool:
+        """Whether ``bend`` and ``shift`` make the interval wider by more than a fifth."""
+        return self.stderr**2 > WIDER**2 * (self.stderr**2 - self.bend**2 - self.shift**2)
+
+    def with_shift(self, shift: float) -> Exponent:
+        """The same with an interval that is wider by how far two estimates lie apart."""
+        stderr = float(np.hypot(self.stderr, shift))
+        return dataclasses.replace(self, stderr=stderr, interval=_interval(self.value, stderr), shift=abs(shift))
 
     @property
     def predicts(self) -> bool:
@@ -43,7 +59,9 @@ def largest_exponent(series: np.ndarray, delay: int, theiler: int, rng: np.rando
 
     The number of coordinates and of neighbours is the pair that predicts best out of sample. Other pairs that predict nearly as
     well (within a factor of 1.5, at most four in all) count too, weighted by the inverse square of their error: their scatter is
-    the error of the choice. The error of a finite series comes from stretches of it; 5 % is added for what neither sees.
+    the error of the choice. The error of a finite series comes from stretches of it. An affine map of a neighbourhood that is too
+    wide misses how the motion bends in it, as in a short or coarsely sampled series: the change of the value with twice the
+    neighbours, which about doubles that error on an attractor of dimension two, is added. So are 5 % for what nothing sees.
 
     Parameters
     ----------
@@ -62,24 +80,29 @@ def largest_exponent(series: np.ndarray, delay: int, theiler: int, rng: np.rando
     if best.error > PREDICTS:
         used = used[:1]
     # The others are compared with the best over the same shorter stretches, in which their sampling errors cancel.
-    chains = [(best, CHAIN)] + ([(one, SHORT_CHAIN) for one in used] if len(used) > 1 else [])
+    wider = dataclasses.replace(best, neighbours=2 * best.neighbours)
+    chains = [(best, CHAIN), *((one, SHORT_CHAIN) for one in (*used, wider))]
 
     def told(asked: tuple[tuple[LocalMap, int], np.random.Generator]) -> Growth:
         (chosen, chain), own = asked
         return growth(series, delay, theiler, chosen, own, chain)
 
     grown, *short = side_by_side(told, zip(chains, rng.spawn(len(chains))))
-    values = grown.exponent + np.array([one.exponent - short[0].exponent for one in short] or [0.0])
+    values = grown.exponent + np.array([one.exponent - short[0].exponent for one in short[:-1]])
     weights = np.array([(best.error / max(one.error, 1e-12)) ** 2 for one in used])
     weights /= weights.sum()
     value = float(weights @ values)
     between = float(weights @ (values - value) ** 2)
     within = _sampling(grown) ** 2
-    stderr = float(np.sqrt(between + within + (SYSTEMATIC * value) ** 2))
+    bend = abs(short[-1].exponent - short[0].exponent)
+    stderr = float(np.sqrt(between + within + (SYSTEMATIC * value) ** 2 + bend**2))
     return Exponent(
-        value, stderr, (value - NORMAL_95 * stderr, value + NORMAL_95 * stderr), best.error, tuple(used),
-        tuple(float(one) for one in values), tuple(tried),
+        value, stderr, _interval(value, stderr), best.error, tuple(used), tuple(float(one) for one in values), tuple(tried), bend,
     )  # fmt: skip
+
+
+def _interval(value: float, stderr: float) -> tuple[float, float]:
+    return value - NORMAL_95 * stderr, value + NORMAL_95 * stderr
 
 
 def _sampling(grown: Growth) -> float:

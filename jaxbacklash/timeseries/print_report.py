@@ -14,6 +14,9 @@ def text(found: ChaosReport) -> str:
     dt, raw = found.dt, found.raw_dimension
     lines = [f"{found.verdict.word}: {found.verdict.text}", ""]
     lines.append(_exponent(found))
+    if found.shortened:
+        lines.append(f"  used                            {found.shortened}")
+    lines += [f"  why so wide                     {one}" for one in why_wide(found)]
     lines += _driven(found)
     if found.conditional:
         lines.append("  what follows looks at the series alone, as if nothing had driven it")
@@ -65,6 +68,25 @@ def _exponent(found: ChaosReport) -> str:
         f"  largest Lyapunov exponent       {value:.4g} 1/s, 95 % interval {interval[0]:.4g} to {interval[1]:.4g}, "
         f"{value / math.log(2.0):.4g} bit/s{per}"
     )
+
+
+def why_wide(found: ChaosReport) -> list[str]:
+    """What makes the interval wider than the scatter of the series would; nothing where that is little."""
+    one = found.exponent
+    if found.conditional or found.lyapunov is None or one is None or not one.widened:
+        return []
+    said = []
+    if one.bend > one.shift / 2.0:
+        said.append(
+            f"with twice as many neighbours the local maps give {one.bend / found.dt:.2g} 1/s more or less: states lie too far "
+            "apart for affine maps; more samples, or finer ones, narrow it"
+        )
+    if one.shift > one.bend / 2.0:
+        said.append(
+            f"taking noise off changed it by {one.shift / found.dt:.2g} 1/s, and with {found.period:.3g} samples a swing it may "
+            "have taken motion off too; finer sampling narrows it, or --no-clean"
+        )
+    return said
 
 
 def _driven(found: ChaosReport) -> list[str]:
