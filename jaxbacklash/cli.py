@@ -337,6 +337,8 @@ def main() -> None:
     end_when_told()
     warnings.showwarning = _plain_warning
     warnings.filterwarnings("ignore", category=RuntimeWarning)  # of numpy's steps; what a command tells is finite, or an error
+    # A cache that cannot be read or written costs time, nothing else.
+    warnings.filterwarnings("ignore", message="Error (reading|writing) persistent compilation cache")
     for stream in (sys.stdout, sys.stderr):  # names of files may hold what the terminal's letters cannot show
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")

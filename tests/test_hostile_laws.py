@@ -166,3 +166,10 @@ def test_an_effect_named_twice_is_told(effects):
 def test_an_effect_that_the_model_file_has_is_not_begun_anew():
     with pytest.raises(BadInput, match="has this effect already"):
         add_effects(System(1.0, None, Damper(0.0), {"gravity": Gravity(3.0)}), ["gravity"])
+
+
+def test_what_a_refused_file_printed_is_no_second_sentence(tmp_path, capsys):
+    (tmp_path / "laws.py").write_text("print('hello')\n")
+    with pytest.raises(BadInput, match="defines no effect"):
+        load_laws(tmp_path / "laws.py")
+    assert capsys.readouterr() == ("", "")

@@ -7,7 +7,8 @@ import pytest
 
 from jaxbacklash.commands.heldout import check_heldout
 from jaxbacklash.errors import BadInput
-from jaxbacklash.records import Record
+from jaxbacklash.records import Record, read_series
+from jaxbacklash.signals.resolution import rounding_noise
 
 
 def record(path="one.csv", seed=0, **factors):
@@ -58,3 +59,16 @@ def test_another_record_of_the_kind_is_taken_without_a_word():
         warnings.simplefilter("error")
         check_heldout([record()], record("two.csv", 1))
         check_heldout([record()], None)
+
+
+def test_small_values_are_no_coarse_ones():
+    """Not all of them are nought to no decimals, which would be a step of one."""
+    assert rounding_noise(1e-9 * np.random.default_rng(2).standard_normal(400)) < 1e-15
+
+
+@pytest.mark.parametrize(("factor", "fragment"), [(1e200, "values of up to"), (1e-200, "a range of")])
+def test_a_series_of_any_unit_has_bounds_too(tmp_path, factor, fragment):
+    values = factor * np.random.default_rng(3).uniform(0.5, 1.0, 400)
+    (tmp_path / "s.csv").write_text("t,z\n" + "".join(f"{k / 100},{v!r}\n" for k, v in enumerate(values.tolist())))
+    with pytest.raises(BadInput, match=fragment):
+        read_series(tmp_path / "s.csv", "z")

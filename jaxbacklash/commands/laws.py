@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import builtins
 import contextlib
-import functools
 import importlib.util
+import io
 import os
 import shlex
 import sys
@@ -17,7 +17,7 @@ import threading
 import types
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from ..errors import BadInput
 from ..mechanics import AbstractEffect, canonical_name, catalogue
@@ -54,7 +54,7 @@ def load_laws(path: Path | None) -> None:
     text = _text(path, where)
     before = {name: cls for name, cls in catalogue().items() if not cls.__module__.startswith(MODULE)}
     with _within(LONGEST, f"error: {where}: is still running after {LONGEST:g} s, wanted a file that only defines effects"):
-        module = _run(path, text, where)
+        module, told = _run(path, text, where)
         own = [cls for cls in vars(module).values() if isinstance(cls, type) and cls.__module__ == module.__name__]
         laws = [cls for cls in own if issubclass(cls, AbstractEffect) and not cls.__name__.startswith("Abstract")]
         if not laws:
@@ -69,8 +69,9 @@ def load_laws(path: Path | None) -> None:
             if name in seen:
                 raise BadInput(f"{where}: the classes {seen[name].__name__} and {cls.__name__} are both named {name}; rename one")
             seen[name] = cls
-            with contextlib.redirect_stdout(sys.stderr), _no_way_out():
+            with contextlib.redirect_stdout(told), _no_way_out():
                 check_law(cls, path, where)
+    sys.stderr.write(told.getvalue())
 
 
 def _text(path: Path, where: str) -> bytes:
@@ -86,16 +87,16 @@ def _text(path: Path, where: str) -> bytes:
         raise BadInput(f"{where}: cannot be read ({getattr(why, 'strerror', None) or why})") from None
 
 
-def _run(path: Path, text: bytes, where: str) -> types.ModuleType:
-    """The file as a module, which is known by a name that no other file has."""
+def _run(path: Path, text: bytes, where: str) -> tuple[types.ModuleType, io.StringIO]:
+    """The file as a module, which is known by a name that no other file has, and what it printed."""
     name = f"{MODULE}{abs(hash(os.path.abspath(path))):x}"
     module = types.ModuleType(name)
     module.__file__, module.__spec__ = str(path), importlib.util.spec_from_loader(name, loader=None)
-    # What is printed beside a result that a machine reads goes where warnings go, also from within a law later on.
-    module.__dict__["print"] = functools.partial(builtins.print, file=sys.stderr)
+    told = io.StringIO()  # shown if all goes well: an error is one sentence
+    module.__dict__["print"] = _aside
     sys.modules[name] = module  # dataclasses look their own module up
     try:
-        with contextlib.redirect_stdout(sys.stderr), _no_way_out():
+        with contextlib.redirect_stdout(told), _no_way_out():
             exec(compile(text, str(path), "exec", dont_inherit=True), module.__dict__)  # the user's own program
     except SyntaxError as error:
         raise BadInput(f"{where}, line {error.lineno}: is not Python ({error.msg}); correct that line") from None
@@ -104,7 +105,13 @@ def _run(path: Path, text: bytes, where: str) -> types.ModuleType:
     from ..precision import enable_double_precision
 
     enable_double_precision()  # which such a file may have switched off
-    return module
+    return module, told
+
+
+def _aside(*words: object, **how: Any) -> None:
+    """What ``print`` is within a file of laws: beside what a command tells on stdout, also from within a law later on."""
+    told = sys.stdout if isinstance(sys.stdout, io.StringIO) else sys.stderr
+    builtins.print(*words, **{"file": told, **how})
 
 
 def named(error: BaseException) -> str:

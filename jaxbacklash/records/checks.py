@@ -17,6 +17,8 @@ CHANNELS = ("x", "z", "y", "F", "T")
 
 MIN_SAMPLES = 64
 MIN_SECONDS = 0.5
+LARGEST_SERIES = 1e60
+"""The same for a series of any quantity in any unit, which is brought to its own size before it is judged."""
 LARGEST = 1e12
 """No value in SI units is larger in size, and no motion or force smaller in range than its inverse: squares and fourth powers of
 them, which a fit needs, stay far within double precision."""
@@ -88,15 +90,16 @@ def finite(values: np.ndarray, name: str, where: str, place: Callable[[int], str
     raise BadInput(sentence, remedy="--resample" if bridge else "")
 
 
-def of_computable_size(values: np.ndarray, name: str, where: str) -> None:
-    """Refuse values (N,), finite, whose size or range no measurement in SI units has and no fit can compute with."""
+def of_computable_size(values: np.ndarray, name: str, where: str, most: float = LARGEST) -> None:
+    """Refuse values (N,), finite, that are larger than ``most`` in size, or of a range below its inverse: no measurement in SI
+    units is, and no fit can compute with them."""
     cure = "a measurement in SI units; is the unit right? convert with --unit or --scale"
     largest = float(np.max(np.abs(values)))
-    if largest > LARGEST:
-        raise wrong(f"{where}, column {name}", f"values of up to {number(largest)} in size", f"at most {LARGEST:g}, {cure}")
+    if largest > most:
+        raise wrong(f"{where}, column {name}", f"values of up to {number(largest)} in size", f"at most {most:g}, {cure}")
     extent = float(np.ptp(values))
-    if 0.0 < extent < 1.0 / LARGEST:
-        raise wrong(f"{where}, column {name}", f"a range of {number(extent)}", f"at least {1.0 / LARGEST:g}, {cure}")
+    if 0.0 < extent < 1.0 / most:
+        raise wrong(f"{where}, column {name}", f"a range of {number(extent)}", f"at least {1.0 / most:g}, {cure}")
 
 
 def same_length(values: np.ndarray, name: str, t: np.ndarray, where: str) -> None:

@@ -122,6 +122,7 @@ def series_of(table: Table, channel: str | None, options: ReadOptions, where: st
         checks.same_length(values, one, t, where)
     for one, values in {"t": t, **found}.items():
         checks.finite(values, one, where, table.place)
+        checks.of_computable_size(values, one, where, checks.LARGEST_SERIES)
     t, found, _ = before(t, found, {}, options)
     checks.long_enough(t, where)
     time_axis.increasing(t, where)

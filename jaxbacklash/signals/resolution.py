@@ -61,6 +61,8 @@ def _decimals(values: np.ndarray) -> float:
     few = values[:: max(1, values.size // (4 * FEWEST))]
     for decimals in range(MOST_DECIMALS + 1):
         step = 10.0**-decimals
+        if largest < step:  # all of them are nought to so few decimals
+            continue
         if largest / step > 10.0**MOST_DIGITS:
             break
         if _whole(few / step) and _whole(values / step):
