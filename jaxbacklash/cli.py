@@ -347,7 +347,8 @@ def main() -> None:
     atexit.register(gc.freeze)  # nor once more when all of it goes anyway, which took longer than a fit
     try:
         code = app(standalone_mode=False)  # the exit code where the parser ended the command, after --help
-        sys.stdout.flush()
+        if sys.stdout is not None:  # it was closed before the command began
+            sys.stdout.flush()
     except BaseException as error:
         if len(sys.argv) < 2 and hasattr(error, "format_message"):  # without any word the parser answers with the help
             print(error.format_message(), file=sys.stderr)

@@ -215,3 +215,15 @@ def test_a_base_in_another_unit_than_the_link_is_told_by_the_unit(factor, unit):
     slow = 0.1 * np.sin(5.0 * T) + 0.05 * np.sin(11.0 * T) + 3e-5 * RNG.standard_normal(N)
     told = refusal(named(t=T, x=factor * slow, y=slow + 1e-3 * np.sin(60.0 * T)))
     assert told.remedy == f"--unit {unit}"
+
+
+def test_times_that_grow_ever_faster_are_uneven_not_bursts():
+    told = refusal(named(t=T**3, x=X, z=Z))
+    assert "uneven" in str(told) or "gap" in str(told)
+
+
+@pytest.mark.parametrize(("times", "found"), [(T[::-1], "sort them by time"), (0.0 * T + 5.0, "is 5 in every row")])
+def test_times_in_no_order_get_no_rate_to_paste(times, found):
+    told = refusal(named(t=times, x=X, z=Z))
+    assert found in str(told)
+    assert not told.remedy

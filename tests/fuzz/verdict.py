@@ -97,7 +97,7 @@ def _interrupted(run: Run) -> list[str]:
 
 def _answer(case: Case, run: Run) -> list[str]:
     """What is wrong with an answer."""
-    complaints = [] if case.accepts else ["accepted: exit code 0"]
+    complaints = [] if case.accepts or case.words[0] == "look" else ["accepted: exit code 0"]
     if run.out.lstrip().startswith("{"):
         try:
             json.loads(run.out, parse_constant=lambda name: complaints.append(f"{name} in JSON"))

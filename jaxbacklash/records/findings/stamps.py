@@ -31,11 +31,16 @@ def stamps(t: np.ndarray) -> list[Finding]:
     if t.size < 8 or not np.isfinite(t).all():
         return []
     steps = np.diff(t)
+    if not steps.any():
+        what = f"repeats at row 2 and is {t[0]:.9g} in every row; if the samples are even, pass --rate HZ, the samples per second"
+        return [Finding("bursts", REFUSE, "t", what)]
     back = np.flatnonzero(steps < 0)
     if back.size:
         row = int(back[0])
         more = f", and {back.size - 1} more such rows" if back.size > 1 else ""
         what = f"goes back from {t[row]:.9g} s at row {row + 1} to {t[row + 1]:.9g} s at row {row + 2}{more}"
+        if back.size > MANY * steps.size:  # --rate would take them in the order of the file
+            return [Finding("backwards", REFUSE, "t", f"{what}: the rows are not in the order of time; sort them by time")]
         again = back.size <= FEW and bool(np.all(steps[back] < -FEW * np.median(np.abs(steps))))
         remedy = f"--to {t[row]:.9g}" if again else f"--rate {_round(t):.6g}"
         return [Finding("backwards", REFUSE, "t", f"{what}{AGAIN if again else ''}", remedy, (row,))]
@@ -113,6 +118,8 @@ def _bursts(t: np.ndarray, steps: np.ndarray) -> list[Finding]:
     if in_packets and gaps.size >= 4:
         each = int(np.median(np.diff(gaps)))
         what = f"comes in bursts of about {each} rows, as packets arrive; if the samples are even, {rate:.6g} Hz fits them"
+    elif not same.size:
+        return []
     else:
         what = f"repeats at {listed_rows(same + 1)}; if the samples are even, {rate:.6g} Hz fits them"
     return [Finding("bursts", ASK, "t", what, f"--rate {rate:.6g}", tuple((same + 1).tolist()), rate)]
