@@ -30,21 +30,33 @@ app = typer.Typer(
 )
 
 
-class Computation(TyperCommand):
-    """A command that computes: its words are understood, and its files are there, before any library loads."""
+class Checked(TyperCommand):
+    """A command whose numbers and file names are checked, all at once, before any library loads."""
 
     def invoke(self, ctx: Any) -> Any:
-        """Run it as the program computes, its last run's programs on their way."""
+        """Check what was given, then run."""
         from .commands.doors import check
-        from .program import cache_folder, start
 
         check(self.name or "", ctx.params, {p.name: max(p.opts, key=len) for p in self.params})
+        return self.run(ctx)
+
+    def run(self, ctx: Any) -> Any:
+        """Run the command."""
+        return super().invoke(ctx)
+
+
+class Computation(Checked):
+    """A command that computes."""
+
+    def run(self, ctx: Any) -> Any:
+        """Run it as the program computes, its last run's programs on their way."""
+        from .program import cache_folder, start
 
         start(brief=self.name != "map")  # a map computes for long
         from .read_ahead import reading_ahead
 
         with reading_ahead(self.name or "", cache_folder()):
-            return super().invoke(ctx)
+            return super().run(ctx)
 
 
 computes = functools.partial(app.command, cls=Computation)
@@ -80,7 +92,7 @@ Heldout = Annotated[
 ]
 
 
-@app.command(epilog="Example: jaxbacklash look run1.csv")
+@app.command(cls=Checked, epilog="Example: jaxbacklash look run1.csv")
 @reads
 def look(
     file: Annotated[Path, typer.Argument(callback=there, help="Any file with measurements")],

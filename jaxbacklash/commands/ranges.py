@@ -42,6 +42,9 @@ RANGES: dict[str, Range] = {
     "map.periods": Range(1, 100_000, "a number of periods"),
     "map.skip": Range(0, 100_000, "a number of periods"),
     "map.samples": Range(1, 10_000, "a number of samples"),
+    "ratio": Range(1e-6, 1e6, "turns of x for a turn of the link"),
+    "start": Range(-1e12, 1e12, "a time of the record [s]"),
+    "stop": Range(-1e12, 1e12, "a time of the record [s]"),
     "skip": Range(0, 10**9, "a number of lines"),
 }
 """By the name of the option, or by command and option where an option means something else in one command."""
