@@ -264,6 +264,17 @@ def test_elements_of_a_kind_that_does_not_exist_never_reach_the_library(tmp_path
     refused(tmp_path / "rec.mat", "damaged or no MATLAB file")
 
 
+def test_a_matrix_that_lacks_what_it_announces_never_reaches_the_library(tmp_path):
+    io.savemat(tmp_path / "rec.mat", {"log": {"x": X[:, None], "z": Z[:, None]}, "cells": np.array([T, X], dtype=object)})
+    whole = (tmp_path / "rec.mat").read_bytes()
+    place = whole.index(struct.pack("<IIII", 6, 8, 6, 0)) + 9
+    (tmp_path / "rec.mat").write_bytes(whole[:place] + b"\x08" + whole[place + 1 :])  # complex, without imaginary parts
+    refused(tmp_path / "rec.mat", "damaged or no MATLAB file")
+    place = whole.rindex(struct.pack("<IIII", 6, 8, 1, 0)) + 24
+    (tmp_path / "rec.mat").write_bytes(whole[:place] + struct.pack("<ii", 30000, 30000) + whole[place + 8 :])
+    refused(tmp_path / "rec.mat", "damaged or no MATLAB file")
+
+
 def test_places_out_of_range_in_a_sparse_matrix_are_refused(tmp_path):
     io.savemat(tmp_path / "rec.mat", {"x": sparse.csc_matrix(X[:, None])})
     data = bytearray((tmp_path / "rec.mat").read_bytes())

@@ -29,7 +29,8 @@ def plain(value: Any) -> Any:
     if hasattr(value, "toarray"):  # a sparse matrix; of 1e9 by 1e9 with one number it would fill the memory
         if value.shape[0] * value.shape[1] * 8 > MAX_BYTES:
             return Unread(f"a sparse matrix of shape {value.shape}")
-        value.check_format(full_check=True)  # places out of range would be written to
+        if hasattr(value, "check_format"):
+            value.check_format(full_check=True)  # places out of range would be written to
         return value.toarray()
     if not isinstance(value, np.ndarray):
         return value

@@ -7,7 +7,9 @@ published by MathWorks ("MAT-File Format", chapter 1); what is packed is unpacke
 
 from __future__ import annotations
 
-import io
+import bisect
+import itertools
+import math
 import mmap
 import struct
 import zlib
@@ -21,10 +23,48 @@ SIMPLE = frozenset((1, 2, 3, 4, 5, 6, 7, 9, 12, 13, 16, 17, 18))
 """Kinds of elements that hold numbers or text."""
 NUMERIC = frozenset(range(4, 16))
 """Classes of matrices that hold nothing but numbers or text: char, sparse, double, single and the whole numbers."""
+FLAGS, CHAR, SPARSE = 6, 4, 5
+CONTAINERS = frozenset((1, 2, 3))
+"""Classes of cells, structs and objects."""
+ELEMENTS = {SPARSE: 6}
+"""Elements of a matrix where they are more than four (flags, lengths, name, numbers); imaginary parts come on top."""
+MAX_EMPTY = 4096
+"""An array of structs without fields has no values of its own; longer ones are damage."""
 MAX_DEPTH = 64
 
 
-def checked(path: Path) -> Path | io.BytesIO:
+class Parts:
+    """Pieces of bytes as one file to read from; a megabyte that is asked for as it stands is not copied."""
+
+    def __init__(self, pieces: list[bytes]) -> None:
+        self.pieces, self.place = pieces, 0
+        self.ends = list(itertools.accumulate(map(len, pieces)))
+
+    def read(self, size: int = -1) -> bytes:
+        """The next ``size`` bytes, or all that are left."""
+        left = self.ends[-1] - self.place
+        size = left if size < 0 else min(size, left)
+        found = []
+        while size > 0:
+            number = bisect.bisect_right(self.ends, self.place)
+            piece = self.pieces[number]
+            begin = self.place - self.ends[number] + len(piece)
+            found.append(piece[begin : begin + size])
+            size -= len(found[-1])
+            self.place += len(found[-1])
+        return found[0] if len(found) == 1 else b"".join(found)
+
+    def seek(self, offset: int, whence: int = 0) -> int:
+        """Go to a place, as files do."""
+        self.place = offset + (0, self.place, self.ends[-1])[whence]
+        return self.place
+
+    def tell(self) -> int:
+        """Where the next byte comes from."""
+        return self.place
+
+
+def checked(path: Path) -> Path | Parts:
     """A file whose elements are all well formed: itself, or unpacked where any element is packed.
 
     Raises
@@ -45,7 +85,7 @@ def checked(path: Path) -> Path | io.BytesIO:
             return _unpacked(view, order, path) or path
 
 
-def _unpacked(view: memoryview, order: str, path: Path) -> io.BytesIO | None:
+def _unpacked(view: memoryview, order: str, path: Path) -> Parts | None:
     """Walk the variables of a file; the file with all of them unpacked, None where none is packed."""
     parts: dict[tuple[int, int], bytes] = {(0, HEADER_BYTES): b""}
     budget = Budget(str(path))
@@ -54,20 +94,21 @@ def _unpacked(view: memoryview, order: str, path: Path) -> io.BytesIO | None:
         kind, begin, stop, _ = _element(view, at, len(view), order)
         parts[at, stop] = b""
         if kind == COMPRESSED:
-            data = _inflated(bytes(view[begin:stop]), budget)
+            with view[begin:stop] as part:  # let go even where it is refused: the file cannot be closed before
+                data = _inflated(part, budget)
             with memoryview(data) as inner:
                 _, _, end, _ = _element(inner, 0, len(inner), order)
                 _walk(inner, 0, end, order, 0, frozenset((MATRIX,)))
-            parts[at, stop] = data[:end]
+            parts[at, stop] = data if end == len(data) else data[:end]
         else:
             _walk(view, at, stop, order, 0, frozenset((MATRIX,)))
         at = stop  # SciPy looks for the next variable there too
     if not any(parts.values()):
         return None
-    return io.BytesIO(b"".join(data or bytes(view[begin:stop]) for (begin, stop), data in parts.items()))
+    return Parts([data or bytes(view[begin:stop]) for (begin, stop), data in parts.items()])
 
 
-def _inflated(data: bytes, budget: Budget) -> bytes:
+def _inflated(data: memoryview, budget: Budget) -> bytes:
     """A packed variable, all of it and no more than fits."""
     stream = zlib.decompressobj()
     found = stream.decompress(data, budget.left + 1)
@@ -94,18 +135,35 @@ def _element(view: memoryview, at: int, end: int, order: str) -> tuple[int, int,
     return kind, begin, begin + size, after
 
 
-def _walk(view: memoryview, at: int, end: int, order: str, depth: int, allowed: frozenset[int]) -> None:
-    """Check the elements between two places, and those within matrices."""
+def _walk(view: memoryview, at: int, end: int, order: str, depth: int, allowed: frozenset[int]) -> int:
+    """Check the elements between two places, and those within matrices; returns how many there are."""
     if depth > MAX_DEPTH:
         raise ValueError("matrices within matrices without end")
+    count = 0
     while at < end:
-        kind, begin, stop, after = _element(view, at, end, order)
+        kind, begin, stop, at = _element(view, at, end, order)
         if kind not in allowed:
             raise ValueError(f"an element of kind {kind}")
         if kind == MATRIX and stop > begin:
-            flags, start, _, _ = _element(view, begin, stop, order)
-            if flags != 6:
-                raise ValueError("a matrix without its flags")
-            numeric = struct.unpack_from(f"{order}I", view, start)[0] & 0xFF in NUMERIC
-            _walk(view, begin, stop, order, depth + 1, SIMPLE if numeric else SIMPLE | {MATRIX})
-        at = after
+            _check_matrix(view, begin, stop, order, depth)
+        count += 1
+    return count
+
+
+def _check_matrix(view: memoryview, begin: int, stop: int, order: str, depth: int) -> None:
+    """Check that a matrix has the elements that its flags and its lengths announce: where one is missing, SciPy takes the next
+    variable's for it."""
+    kind, start, _, after = _element(view, begin, stop, order)
+    if kind != FLAGS:
+        raise ValueError("a matrix without its flags")
+    flags = struct.unpack_from(f"{order}I", view, start)[0]
+    own, two = flags & 0xFF, flags >> 11 & 1
+    numeric = own in NUMERIC
+    count = _walk(view, begin, stop, order, depth + 1, SIMPLE if numeric else SIMPLE | {MATRIX})
+    if numeric and count < ELEMENTS.get(own, 4) + (two if own != CHAR else 0):
+        raise ValueError("a matrix without its numbers")
+    if own in CONTAINERS:
+        kind, start, end, _ = _element(view, after, stop, order)
+        lengths = struct.unpack_from(f"{order}{(end - start) // 4}i", view, start)
+        if kind != 5 or math.prod(lengths) > count + MAX_EMPTY or min(lengths, default=0) < 0:
+            raise ValueError("cells or structs without their values")
