@@ -12,6 +12,7 @@ import numpy as np
 
 from ..causes import Cause
 from ..errors import BadInput
+from ..fitting.answers import check_answers
 from ..fitting.counts import few_counts
 from ..fitting.equation_error import Start
 from ..fitting.estimates import judge
@@ -22,6 +23,7 @@ from ..fitting.score import Score, score
 from ..fitting.search import TIES, inverse_information, silent
 from ..fitting.setup import base_system, first_guess, free_names
 from ..fitting.shooting import Problem, Unknowns
+from ..fitting.size import check_size
 from ..fitting.windows import Windows
 from ..precision import require_double_precision
 from ..records import Record, oriented
@@ -124,6 +126,8 @@ def refine(
     require_double_precision("refine")
     record = oriented(record)
     heldout = None if heldout is None else oriented(heldout)
+    check_size([record] if heldout is None else [record, heldout])
+    check_answers([record])
     tell_way([record] if heldout is None else [record, heldout])
     if heldout is not None and heldout.kind != record.kind:
         raise BadInput(f"{heldout.path}: is a {heldout.kind} record, {record.path} a {record.kind} record; wanted two of a kind")
@@ -203,7 +207,8 @@ class _Judge:
         plain = pruned(trial)
         records = (bench.record,)
         estimates = judge(
-            plain, free, stderr, records, per_inertia=self.per_inertia, translational=self.translational
+            plain, free, stderr, records, per_inertia=self.per_inertia, translational=self.translational,
+            covariance=covariance,
         )
         joined = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1] if trial.tied else 0.0))
         return Fit(

@@ -263,7 +263,7 @@ class Search(Unseen):
         """The path with laws of its last model reduced to simpler ones that they contain, where those do as well."""
         final = steps[-1].trial
         for name in sorted(final.names):
-            for other in self.bench.laws[name].absorbs:
+            for other in self.bench.contained(name):
                 simpler = self.simplified(final, name, other)
                 richer = final if simpler.tied == final.tied else self.loosened(final)
                 if gain(simpler, richer) >= demanded(self.bench):

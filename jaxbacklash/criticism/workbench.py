@@ -118,6 +118,10 @@ class Workbench:
             return 0.0
         return noise_of_speed(self.record.t, self.record.channels[self.record.observed_name], self.layout.noise[0])
 
+    def contained(self, name: str) -> tuple[str, ...]:
+        """Simpler laws that a law contains, those that can act in this joint: an axis without one has no friction in it."""
+        return tuple(n for n in self.laws[name].absorbs if n in self.laws)
+
     def rests(self, port: str) -> bool:
         """Whether the link rests for long at a port, ``joint`` or ``ground``, or may for all that the record tells."""
         if self.quick.blind:

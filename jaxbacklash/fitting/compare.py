@@ -13,6 +13,7 @@ from ..system import System
 from .fit import predict_record
 from .left_over import quieter
 from .score import Score
+from .size import check_size
 from .windows import observed_noise
 
 
@@ -68,6 +69,7 @@ def compare(system: System, record: Record, *, window: float | None = None, tran
                 f"wanted a record with {system.observed}"
             )
     record = oriented(record)
+    check_size([record])
     noise = observed_noise(record)
     with np.errstate(over="ignore", invalid="ignore"):  # a motion that grows without bound, which is told
         seen = predict_record(system, record, window=window)

@@ -12,15 +12,21 @@ from scipy.special import ndtri
 from ..parameters import specs, unit_text, values
 from ..records import Record
 from ..system import System
+from .hard import SHORTEST, contact_samples, reach_of_sampling
 
 FOUND, ONE_SIDED, UNDETERMINED = "found", "one-sided", "not determined"
 MOST_UNCERTAIN = 0.5
 """Standard error, as a share of the value, above which a value is not determined."""
 CLEAR = 5.0
 """Standard errors that a contact stiffness has to stand clear of zero."""
+ONE_WITH = 0.9995
+"""Correlation of two errors from which on only a combination of the two parameters is determined: it prints as 1.000."""
 CARRIED = 0.1
 """Share of the largest transmitted force that only contact can carry."""
 NORMAL_95 = float(ndtri(0.975))
+BELOW_95 = float(ndtri(0.95))
+BOUNDED = ("damping", "backlash")
+"""Parameters that may be zero, of which an upper bound is worth telling where they are not determined."""
 
 
 @dataclass(frozen=True)
@@ -87,16 +93,25 @@ def judge(
     *,
     per_inertia: bool,
     translational: bool,
+    covariance: np.ndarray | None = None,
 ) -> dict[str, Estimate]:
     """Estimates with verdicts.
 
     A stiffness that does not stand clear of its error, or a play that no sample leaves, was not determined; a play met on
-    one side only is one-sided: the record tells where that edge is, not how far away the other one lies.
+    one side only is one-sided: the record tells where that edge is, not how far away the other one lies. Of two parameters
+    whose errors are one, by the ``covariance`` (q, q) in the order of ``free``, neither was.
     """
     described, present = specs(system), values(system)
     length = "m" if translational else "rad"
     found: dict[str, Estimate] = {}
+    partners = {} if covariance is None else _inseparable(free, covariance)
     reasons = _joint_reasons(system, stderr, records, length) if system.has_play else {}
+    if contact_samples(system, records[0].dt) < SHORTEST and system.observed != "T" and "stiffness" not in reasons:
+        least = reach_of_sampling(system, records[0].dt)
+        of_what = unit_text("N m/rad", translational=translational, per_inertia=per_inertia)
+        reasons["stiffness"] = UNDETERMINED, (
+            f"contacts last less than {SHORTEST:g} samples: it is above {least:.3g} {of_what}, and the sampling shows no more"
+        )
     for name in free:
         spec, error = described[name], stderr[name]
         unit = unit_text(spec.unit, translational=translational, per_inertia=per_inertia)
@@ -104,13 +119,30 @@ def judge(
         verdict, why = reasons.get(name, (FOUND, ""))
         if verdict == FOUND and not np.isfinite(error):
             verdict, why = UNDETERMINED, "this record does not change with it"
-        elif verdict == FOUND and spec.positive and error > MOST_UNCERTAIN * abs(value):
+        elif verdict == FOUND and (spec.positive or name in BOUNDED) and error > MOST_UNCERTAIN * abs(value):
             verdict, why = UNDETERMINED, "its standard error exceeds half of its value"
+            if name in BOUNDED:
+                why += f": below {value + BELOW_95 * error:.2g} {unit} (95 %)"
+        elif verdict == FOUND and name in partners:
+            verdict, why = UNDETERMINED, f"the record tells it only together with {partners[name]}: their errors are one"
         hidden = verdict != FOUND
         finite = np.isfinite(error) and not hidden
         found[name] = Estimate(
             name, None if hidden else value, error if finite else None, unit, verdict, why, spec.label or name
         )
+    return found
+
+
+def _inseparable(free: Sequence[str], covariance: np.ndarray) -> dict[str, str]:
+    """Parameters whose error is one with that of another, and the other."""
+    deviation = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    found: dict[str, str] = {}
+    for i, one in enumerate(free):
+        for j, other in enumerate(free[:i]):
+            size = deviation[i] * deviation[j]
+            if np.isfinite(size) and size > 0.0 and abs(covariance[i, j]) > ONE_WITH * size:
+                found.setdefault(one, other)
+                found.setdefault(other, one)
     return found
 
 

@@ -10,22 +10,26 @@ from itertools import pairwise
 import equinox as eqx
 import numpy as np
 
+from ..errors import NoAnswer
 from ..mechanics import AbstractEffect
 from ..parameters import values, with_values
 from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..system import System
+from .answers import check_answers
 from .equation_error import Start
 from .estimates import Estimate, judge
 from .force import tell_way
+from .hard import SUSPECT, contact_samples, harder
 from .held import held as is_held
 from .left_over import quieter_elsewhere, settle_noise, why_open
 from .lengths import PANELS, longest_panel, score_window, shooting_window
 from .profile import with_profiles
 from .score import Score, score
-from .search import search, silent
+from .search import Found, misfit, search, silent
 from .setup import base_system, first_guess, free_names, make_problem
 from .shooting import Problem, Unknowns
+from .size import check_size
 from .windows import Layout, Windows, crossing_time, cut
 
 ABSOLUTE = ("force", "transmitted")
@@ -126,6 +130,8 @@ def fit(
     """
     require_double_precision("fit")
     chosen = tuple(oriented(r) for r in ((records,) if isinstance(records, Record) else records))
+    check_size(chosen)
+    check_answers(chosen)
     tell_way(chosen)
     clock = {"start": time.perf_counter()}
     progress("reading noise and a first estimate", 0.02)
@@ -140,6 +146,9 @@ def fit(
     clock["cut"] = time.perf_counter()
 
     found = search(system, windows, names, starts=starts, seed=seed, rough=start is None, progress=progress)
+    if not found.tied and system.has_play and not is_held(system):
+        begun = system, windows, layout, group
+        found, (system, windows, layout, group) = _harder(found, begun, chosen, names, window, seed, progress)
     clock["search"] = time.perf_counter()
     progress("scoring predictions", 0.85)
     problem, unknowns = found.problem, found.unknowns
@@ -161,7 +170,7 @@ def fit(
     covariance = excess * found.covariance
     stderr = dict(zip(names, np.sqrt(np.diag(covariance))))
     per_inertia = inertia is None and chosen[0].kind not in ABSOLUTE
-    estimates = judge(fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational)
+    estimates = judge(fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational, covariance=covariance)
     if profile:
         estimates = with_profiles(problem, unknowns, estimates, names, stderr, progress)
     marks = list(clock.items())
@@ -171,6 +180,25 @@ def fit(
         {name: at - before for (_, before), (name, at) in pairwise(marks)}, problem, unknowns,
         unknown_noise,
     )  # fmt: skip
+
+
+def _harder(
+    found: Found, begun: tuple[System, Windows, Layout, int], records: Sequence[Record], names: Sequence[str],
+    window: float | None, seed: int, progress: Callable[[str, float], None],
+) -> tuple[Found, tuple[System, Windows, Layout, int]]:  # fmt: skip
+    """A search that has ended short of the noise, or another from contacts of less than a sample where that ends nearer."""
+    system = begun[0]
+    ended = with_values(system, dict(zip(values(system), np.asarray(found.problem.parameters(found.unknowns.theta)))))
+    if contact_samples(ended, records[0].dt) > SUSPECT:
+        return found, begun
+    progress("fitting again, from a hard contact", 0.7)
+    begin = harder(ended, records)
+    again = prepare(begin, records, window)
+    try:
+        other = search(begin, again[0], names, starts=1, seed=seed, rough=False, progress=progress)
+    except NoAnswer:
+        return found, begun
+    return (other, (begin, *again)) if misfit(other) < misfit(found) else (found, begun)
 
 
 def prepare(

@@ -112,7 +112,7 @@ def led_in(problem: Problem, found: Minimum, first: np.ndarray) -> np.ndarray:
         return starts
     length = w.measured.shape[1]
     link = np.asarray(w.measured)[first]
-    if problem.system.observed == "z":
+    if problem.system.observed == "z" and w.intervals and not w.by_force:  # else its base is at rest
         link = link + np.asarray(found.stats["predicted"].input)[first, :length]
     t = float(w.panel) * w.every * np.arange(length)
     least = np.full(first.size, np.inf)

@@ -236,6 +236,11 @@ def freedom(problem: Problem, *, tied: bool = False) -> float:
     return samples + float(windows.told) * (moving - used * windows.intervals) - starts
 
 
+def misfit(found: Found) -> float:
+    """Prediction error of where a search ended, in units of the noise."""
+    return float(np.sqrt(2.0 * found.cost / freedom(found.problem, tied=found.tied)))
+
+
 def inverse_information(schur: np.ndarray) -> np.ndarray:
     """Covariance from information, (q, q): infinite for what shows nowhere, the pseudo-inverse for what only a sum determines."""
     scale = np.sqrt(np.maximum(np.diag(schur), 0.0))

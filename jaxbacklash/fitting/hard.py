@@ -1,0 +1,50 @@
+r"""A contact that is over before the next sample: a start that a search from the samples does not find.
+
+Where the link stays in contact for less than two samples, it looks as if it turned round at once at the edges of the play. The
+regression of the equation of motion then finds a soft contact in a play that is too small, and no search leads from there to the
+hard one. The play is the range of z; of the contact the record tells only that it is harder than the sampling can show.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..parameters import values, with_values
+from ..records import Record
+from ..system import System
+
+SHORTEST = 2.0
+"""Samples in a contact, below which its stiffness is not determined."""
+SUSPECT = 4.0
+"""Samples in a contact, below which a misfit may come from a contact that is harder still."""
+HARDER = 0.5
+"""Samples in a contact with which a search begins anew."""
+TAIL = 0.01
+"""Share of the samples beyond either edge of the range that is the play: noise, and the ends of contacts."""
+
+
+def contact_samples(system: System, dt: float) -> float:
+    r"""Samples (spacing ``dt`` [s]) in a contact: :math:`\pi \sqrt{J/k}` is half a period; infinite without a contact."""
+    if system.contact is None:
+        return np.inf
+    stiffness = float(system.contact.stiffness)
+    return float(np.pi * np.sqrt(float(system.inertia) / stiffness) / dt) if stiffness > 0.0 else np.inf
+
+
+def reach_of_sampling(system: System, dt: float) -> float:
+    """Contact stiffness whose contacts last `SHORTEST` samples: the record does not tell a harder one."""
+    return float(system.inertia) * (np.pi / (SHORTEST * dt)) ** 2
+
+
+def harder(system: System, records: Sequence[Record]) -> System:
+    """The system to start from with the range of z as the play and contacts of less than a sample."""
+    record = records[0]
+    dt, channels = record.dt, record.channels
+    z = channels["z"] if "z" in channels else channels["y"] - channels.get("x", 0.0)
+    low, high = np.quantile(z, [TAIL, 1.0 - TAIL])
+    mass, found = float(system.inertia), values(system)
+    damping = min(found["damping"], 0.5 * mass / dt / z.size)  # what a long flight tells, the search finds
+    stiffness = mass * (np.pi / (HARDER * dt)) ** 2
+    return with_values(system, {"backlash": float(high - low), "stiffness": stiffness, "damping": damping})

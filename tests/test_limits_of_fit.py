@@ -1,0 +1,110 @@
+"""What a fit does not claim or take on: motions that are noise, parameters that only come together, contacts between two samples,
+records too large."""
+
+import numpy as np
+import pytest
+
+import jaxbacklash as jb
+from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.effects import Contact, Damper
+from jaxbacklash.fitting.answers import check_answers
+from jaxbacklash.fitting.estimates import judge
+from jaxbacklash.fitting.hard import reach_of_sampling
+from jaxbacklash.fitting.setup import base_system
+from jaxbacklash.fitting.size import MOST_SAMPLES, check_size, needed_rate
+from jaxbacklash.system import System
+
+NAMES = ("backlash", "stiffness", "damping")
+
+
+def shaken(rate=400.0, seconds=10.0, own=0.0, noise=3e-5, count=None, seed=0):
+    """Two encoders: of a base, and of a link that follows it but for a motion of its own of the size ``own`` [rad]."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(round(rate * seconds)) / rate
+    x = 0.1 * np.sin(8.0 * t) + 0.03 * np.sin(25.0 * t)
+    y = x + own * np.sin(25.0 * t + 1.0)
+    x, y = (v + noise * rng.standard_normal(t.size) for v in (x, y))
+    return jb.Record(t, {n: v if count is None else np.round(v / count) * count for n, v in (("x", x), ("y", y))})
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("count", [None, 2e-4])
+def test_two_encoders_on_one_shaft_are_refused(count, seed):
+    with pytest.raises(jb.errors.BadInput, match=r"y - x is noise of .* one shaft"):
+        check_answers([shaken(count=count, seed=seed)])
+
+
+@pytest.mark.parametrize("own", [1e-5, 1e-3])
+def test_a_relative_motion_below_the_noise_of_a_sample_is_an_answer(own):
+    check_answers([shaken(own=own, seed=s) for s in range(4)])
+
+
+def judged(system, stderr, correlation=0.0, rate=400.0):
+    record = shaken(rate=rate, own=0.02)
+    covariance = np.diag(np.square([stderr[n] for n in NAMES]))
+    covariance[0, 1] = covariance[1, 0] = correlation * stderr["backlash"] * stderr["stiffness"]
+    return judge(system, NAMES, stderr, [record], per_inertia=False, translational=False, covariance=covariance)
+
+
+def test_what_comes_only_together_is_not_determined():
+    system = System(1.0, Contact(0.01, 900.0), Damper(2.0), observed="y")
+    errors = {"backlash": 1e-5, "stiffness": 1.0, "damping": 0.1}
+    assert all(e.value is not None for e in judged(system, errors, 0.99).values())
+    together = judged(system, errors, 0.99999)
+    assert [together[n].value for n in NAMES[:2]] == [None, None]
+    assert "together with stiffness" in together["backlash"].why
+    assert together["damping"].value == 2.0
+
+
+def test_damping_is_told_as_other_parameters_are():
+    system = System(1.0, Contact(0.01, 900.0), Damper(0.1), observed="y")
+    found = judged(system, {"backlash": 1e-5, "stiffness": 1.0, "damping": 0.2})["damping"]
+    assert found.value is None
+    assert found.verdict == "not determined"
+    assert "below 0.43" in found.why
+
+
+def test_a_contact_between_two_samples_has_a_least_stiffness():
+    system = System(1.0, Contact(0.01, 4.0e6), Damper(2.0), observed="y")
+    found = judged(system, {"backlash": 1e-5, "stiffness": 1.0, "damping": 0.1})
+    assert found["stiffness"].value is None
+    assert f"above {reach_of_sampling(system, 1 / 400):.3g}" in found["stiffness"].why
+    assert found["backlash"].value == 0.01
+
+
+def long(rate, seconds, hertz):
+    t = np.arange(round(rate * seconds)) / rate
+    noise = 1e-4 * np.random.default_rng(0).standard_normal(t.size)
+    return jb.Record(t, {"z": 0.1 * np.sin(2 * np.pi * hertz * t) + noise}, path="scope.csv", confirmed=frozenset({"t"}))
+
+
+def test_a_record_of_a_fast_logger_is_sent_back_with_a_rate():
+    with pytest.raises(jb.errors.BadInput, match=r"scope.csv: has 1000000 samples at 50000 Hz.* --resample-rate 200$"):
+        check_size([long(50_000.0, 20.0, 8.0)])
+    with pytest.raises(jb.errors.BadInput, match="--to"):
+        check_size([long(1000.0, 1000.0, 200.0)])
+    check_size([long(1000.0, 0.9 * MOST_SAMPLES / 1000.0, 8.0)])
+
+
+@pytest.mark.parametrize("hertz", [1.0, 8.0, 40.0, 130.0])
+def test_the_rate_proposed_shows_the_fastest_motion(hertz):
+    assert 19.0 * hertz < needed_rate(long(5000.0, 10.0, hertz)) < 55.0 * max(hertz, 4.0)
+
+
+@pytest.mark.parametrize("model", ["joint", "linear", "free"])
+def test_a_law_is_reduced_only_to_one_that_acts_in_the_joint(model):
+    t = np.arange(2000) / 250.0
+    record = jb.Record(t, {"F": 9 * np.sin(4 * t), "y": 0.1 * np.sin(4 * t + 0.5)})
+    system, free, _ = base_system(record, model, 2.0)
+    bench = Workbench(record, system, free, None)
+    for name in bench.laws:
+        assert set(bench.contained(name)) <= set(bench.laws)
+    assert bench.contained("stribeck") == (() if model == "free" else ("coulomb_joint",))
+
+
+@pytest.mark.slow
+def test_a_base_motion_misnamed_as_a_decay_ends_with_an_answer():
+    """The first window sticks, and its start is led in by the samples: of z alone, there is no base to add."""
+    record = shaken(own=0.02)
+    alone = jb.Record(record.t, {"z": record.channels["y"] - record.channels["x"]})
+    assert not jb.fit(alone, inertia=2.0).adequate
