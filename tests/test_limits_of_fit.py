@@ -5,6 +5,9 @@ import numpy as np
 import pytest
 
 import jaxbacklash as jb
+from jaxbacklash.criticism.bounded import bounded
+from jaxbacklash.criticism.search import Search
+from jaxbacklash.criticism.steps import Step
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.effects import Contact, Damper
 from jaxbacklash.fitting.answers import check_answers
@@ -100,6 +103,27 @@ def test_a_law_is_reduced_only_to_one_that_acts_in_the_joint(model):
     for name in bench.laws:
         assert set(bench.contained(name)) <= set(bench.laws)
     assert bench.contained("stribeck") == (() if model == "free" else ("coulomb_joint",))
+
+
+class Endless(Search):
+    """A search that goes on trying."""
+
+    def run(self):
+        self.path = [Step(self.bench.fit({}), None, (), ())]
+        while True:
+            self.bench.fit({}, self.path[-1].trial, patience=1)
+
+
+@pytest.mark.slow
+def test_a_search_ends_after_so_many_fits():
+    record = shaken(own=0.02, seconds=3.0)
+    system, free, _ = base_system(record, "linear", 2.0)
+    bench = Workbench(record, system, free, None)
+    bench.most = 5
+    with pytest.warns(UserWarning, match="ended after 5 fits"):
+        steps = bounded(Endless(bench))
+    assert len(steps) == 1
+    bench.fit({}, steps[-1].trial, patience=1)
 
 
 @pytest.mark.slow

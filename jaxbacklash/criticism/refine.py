@@ -28,6 +28,7 @@ from ..fitting.windows import Windows
 from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..system import System
+from .bounded import bounded
 from .candidates import Candidate
 from .either import either
 from .experiment import Experiment, separate
@@ -144,7 +145,7 @@ def refine(
     clock["prepare"] = time.perf_counter()
     with Foresight(bench) as ahead:
         search = Search(bench, progress, ahead.member, judged.tell)
-        steps = search.run()
+        steps = bounded(search)
     clock["search"] = time.perf_counter()
 
     progress("scoring predictions", 0.85)

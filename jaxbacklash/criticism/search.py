@@ -78,8 +78,8 @@ class Search(Unseen):
 
     def run(self) -> list[Step]:
         """The whole search: the path from the joint alone to the model kept."""
-        base = self.base()
-        steps = self.forward(base, [Step(base, None, (), ())], MUCH)
+        steps = self.path = [Step(self.base(), None, (), ())]
+        steps = self.path = self.forward(steps[0].trial, steps, MUCH)
         final = steps[-1].trial
         if final.tied and final.misfit < 0.97:
             # A noise estimate cannot be right that exceeds what a model leaves: corners were taken for noise.
@@ -91,8 +91,8 @@ class Search(Unseen):
             steps = self.with_hidden(steps)
             if not explained(steps[-1].trial):
                 steps = self.forward(steps[-1].trial, steps, LITTLE)
-        steps = by_free_windows(self, self.with_static(steps), MUCH)
-        steps = recalled(self, one_piece(self, self.with_yielding(self.with_unseen(steps)), MUCH), MUCH)
+        steps = self.path = by_free_windows(self, self.with_static(steps), MUCH)
+        steps = self.path = recalled(self, one_piece(self, self.with_yielding(self.with_unseen(steps)), MUCH), MUCH)
         steps, self.level = self.swap(self.reduced(without_soaking(self, self.with_kin(steps), MUCH)))
         for asked in (within_bounds, arrived, given_at_last, reshaped_at_last, arrived):
             if (other := asked(self, steps)) is not steps:

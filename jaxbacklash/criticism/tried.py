@@ -12,6 +12,7 @@ from .candidates import Candidate, contained, rubs
 from .cuts import cut_free
 from .evidence import demanded, explained, gain, significance
 from .memories import Member
+from .steps import Step
 from .workbench import PATIENCE, Trial, Workbench, adequate, strengths
 
 STUCK = 1.01
@@ -42,6 +43,7 @@ class Tried:
     def __init__(self, bench: Workbench, progress: Callable[[str, float], None] = silent) -> None:
         self.bench, self.progress = bench, progress
         self.known: dict[tuple[frozenset[str], bool], Trial] = {}
+        self.path: list[Step] = []  # as far as a search has come
         self.asked: set[frozenset[str]] = set()  # models that were to be tied with cuts
         self.shook: set[frozenset[str]] = set()  # models that were begun again where dry friction may hold them
         self.passed: set[tuple[frozenset[str], frozenset[str], bool]] = set()  # models begun again from one they contain

@@ -46,6 +46,14 @@ RESTING = 0.015
 """A link rests for long that does so in a larger share of its windows."""
 
 
+MOST_FITS = 1000
+"""Fits of one search at most: it ends with what it has by then. Counted and not timed, so that every run ends alike."""
+
+
+class ExhaustedError(Exception):
+    """A search has made all its fits; caught where the search began."""
+
+
 @dataclass(frozen=True)
 class Trial:
     """A fitted model: ``effects`` as fitted, by name; ``parameters`` free ones by name; ``cost`` half the sum of squares.
@@ -109,7 +117,7 @@ class Workbench:
         self.laws = {n: c for n, c in catalogue().items() if c.catalogued and applicable(c, base)}
         self.static = {n: c for n, c in self.laws.items() if not c.states}
         self.quick = QuickLook(record)
-        self.fits = 0
+        self.fits, self.most = 0, float(MOST_FITS)
 
     @cached_property
     def slowest(self) -> float:
@@ -117,6 +125,11 @@ class Workbench:
         if self.quick.blind:
             return 0.0
         return noise_of_speed(self.record.t, self.record.channels[self.record.observed_name], self.layout.noise[0])
+
+    def _count(self) -> None:
+        if self.fits >= self.most:
+            raise ExhaustedError
+        self.fits += 1
 
     def contained(self, name: str) -> tuple[str, ...]:
         """Simpler laws that a law contains, those that can act in this joint: an axis without one has no friction in it."""
@@ -183,7 +196,7 @@ class Workbench:
             effects = {**effects, **{name: begin.effects[name] for name in grips}}
         problem, free = self.problem(effects, begin)
         if through or held(problem.system):
-            self.fits += 1
+            self._count()
             return self._run(problem, frozenset(effects), free, patience)
         unknowns = first_guess(problem)
         if start is not None:
@@ -193,7 +206,7 @@ class Workbench:
             unknowns = Unknowns(unknowns.theta, own, start.unknowns.coefficients)
         if followed:
             unknowns = Unknowns(unknowns.theta, self._followed(effects, begin, unknowns.starts), unknowns.coefficients)
-        self.fits += 1
+        self._count()
         if tied:
             problem, solution, _ = tie_windows(problem, unknowns, TIES[0], limit=patience, near=COMPARED)
             if patience > PATIENCE and 2.0 * float(solution.stats["cost"]) > ADEQUATE**2 * freedom(problem, tied=True):
@@ -209,7 +222,7 @@ class Workbench:
         sliding = {n: float(np.sqrt(np.mean(self.sliding(e.port) ** 2))) for n, e in effects.items() if e.slides}
         problem, free = self.problem(effects, trial.system)
         still = Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
-        self.fits += 1
+        self._count()
         begin = through_softened(problem, still, sliding, way)
         problem, solution, _ = tie_windows(problem, begin, TIES[0], limit=patience, near=COMPARED)
         return self._trial(problem, solution, trial.names, free, True, patience)

@@ -12,7 +12,7 @@ from scipy.special import ndtri
 from ..parameters import specs, unit_text, values
 from ..records import Record
 from ..system import System
-from .hard import SHORTEST, contact_samples, reach_of_sampling
+from .hard import SHORTEST, contact_samples, most_play, reach_of_sampling
 
 FOUND, ONE_SIDED, UNDETERMINED = "found", "one-sided", "not determined"
 MOST_UNCERTAIN = 0.5
@@ -161,7 +161,9 @@ def _joint_reasons(
         return {"stiffness": (UNDETERMINED, "contact shows, but its standard error exceeds a fifth of its value")}
     if weak or (above == 0.0 and below == 0.0):
         why = f"z never leaves the play: |z| stays below {reach:.4g} {length} and no contact shows"
-        return {"backlash": (UNDETERMINED, why), "stiffness": (UNDETERMINED, why)}
+        lost = max(most_play(r) for r in records)
+        range_of_z = f"; the lost motion, over which z ranges, is {lost:.3g} {length}" if system.observed != "T" else ""
+        return {"backlash": (UNDETERMINED, why + range_of_z), "stiffness": (UNDETERMINED, why)}
     few = 2.0 / min(r.samples for r in records)
     if above <= few or below <= few:
         side, edge = ("upper", high) if above > below else ("lower", low)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import equinox as eqx
@@ -18,11 +18,11 @@ from ..records import Record, oriented
 from ..system import System
 from .answers import check_answers
 from .equation_error import Start
-from .estimates import Estimate, judge
+from .estimates import UNDETERMINED, Estimate, judge
 from .force import tell_way
-from .hard import SUSPECT, contact_samples, harder
+from .hard import SHORTEST, SUSPECT, contact_samples, harder, most_play
 from .held import held as is_held
-from .left_over import quieter_elsewhere, settle_noise, why_open
+from .left_over import EXPLAINED, quieter_elsewhere, settle_noise, why_open
 from .lengths import PANELS, longest_panel, score_window, shooting_window
 from .profile import with_profiles
 from .score import Score, score
@@ -171,6 +171,8 @@ def fit(
     stderr = dict(zip(names, np.sqrt(np.diag(covariance))))
     per_inertia = inertia is None and chosen[0].kind not in ABSOLUTE
     estimates = judge(fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational, covariance=covariance)
+    if not found.tied and contact_samples(fitted, chosen[0].dt) < SHORTEST:
+        estimates |= _between_samples(estimates, chosen, missed=scored[0].rms > EXPLAINED)
     if profile:
         estimates = with_profiles(problem, unknowns, estimates, names, stderr, progress)
     marks = list(clock.items())
@@ -199,6 +201,21 @@ def _harder(
     except NoAnswer:
         return found, begun
     return (other, (begin, *again)) if misfit(other) < misfit(found) else (found, begun)
+
+
+def _between_samples(estimates: dict[str, Estimate], records: Sequence[Record], missed: bool) -> dict[str, Estimate]:
+    """What free windows do not tell where contacts lie between the samples: what is lost in them counts as damping, and where
+    they are ``missed`` the play is not told by them."""
+    where = "contacts lie between the samples"
+    why = {}
+    if (damping := estimates.get("damping")) and damping.value is not None:
+        why["damping"] = f"{where}, and what they lose is taken for it: at most {damping.value:.2g} {damping.unit}"
+    if missed and (play := estimates.get("backlash")):
+        most = max(most_play(r) for r in records)
+        why["backlash"] = f"{where}, and the model misses them: at most {most:.3g} {play.unit}, the range of z"
+    return {
+        name: replace(estimates[name], value=None, stderr=None, verdict=UNDETERMINED, why=said) for name, said in why.items()
+    }
 
 
 def prepare(

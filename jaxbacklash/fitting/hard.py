@@ -41,10 +41,24 @@ def reach_of_sampling(system: System, dt: float) -> float:
 def harder(system: System, records: Sequence[Record]) -> System:
     """The system to start from with the range of z as the play and contacts of less than a sample."""
     record = records[0]
-    dt, channels = record.dt, record.channels
-    z = channels["z"] if "z" in channels else channels["y"] - channels.get("x", 0.0)
-    low, high = np.quantile(z, [TAIL, 1.0 - TAIL])
+    dt, z = record.dt, _relative(record)
+    low, high = _range(z)
     mass, found = float(system.inertia), values(system)
     damping = min(found["damping"], 0.5 * mass / dt / z.size)  # what a long flight tells, the search finds
     stiffness = mass * (np.pi / (HARDER * dt)) ** 2
     return with_values(system, {"backlash": float(high - low), "stiffness": stiffness, "damping": damping})
+
+
+def most_play(record: Record) -> float:
+    """What the play is at most, where contacts lie between the samples: the range of z, in its unit."""
+    low, high = _range(_relative(record))
+    return float(high - low)
+
+
+def _relative(record: Record) -> np.ndarray:
+    channels = record.channels
+    return np.asarray(channels["z"] if "z" in channels else channels["y"] - channels.get("x", 0.0))
+
+
+def _range(z: np.ndarray) -> np.ndarray:
+    return np.asarray(np.quantile(z, [TAIL, 1.0 - TAIL]))
