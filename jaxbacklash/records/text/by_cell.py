@@ -7,6 +7,7 @@ refuses a line with too few or too many values by its number.
 from __future__ import annotations
 
 import csv
+import gc
 import re
 from collections.abc import Sequence
 
@@ -39,7 +40,17 @@ def read_cells(layout: Layout) -> tuple[list[Sequence[str]], np.ndarray, list[st
     BadInput
         Naming the line that has too few or too many values, a quote without end or NUL bytes.
     """
-    where, first = str(layout.source.path), layout.first_line
+    # Millions of small lists make Python's collector of cycles walk through them again and again; there are no cycles.
+    collecting = gc.isenabled()
+    gc.disable()
+    try:
+        return _read_cells(layout, str(layout.source.path), layout.first_line)
+    finally:
+        if collecting:
+            gc.enable()
+
+
+def _read_cells(layout: Layout, where: str, first: int) -> tuple[list[Sequence[str]], np.ndarray, list[str]]:
     with layout.source.lines(first - 1) as file:
         lines = list(file)
     bad = next((row for row, line in enumerate(lines) if "\0" in line), None)

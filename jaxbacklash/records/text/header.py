@@ -18,6 +18,10 @@ MARKER = re.compile(
 """Lines such as "[Data]" that stand between names and values."""
 
 
+Row = tuple[int, list[str]]
+"""A row of words: the index of its line in the head, and its cells."""
+
+
 @dataclasses.dataclass(frozen=True)
 class Names:
     """Names and units of the columns.
@@ -38,47 +42,68 @@ class Names:
 def find_names(head: Head, run: Run, where: str) -> Names:
     """The names and units above a run of values.
 
+    Parameters
+    ----------
+    head : Head
+    run : Run
+        ``run.first`` is the first line of values.
+    where : str
+        The file, for sentences.
+
     Raises
     ------
     BadInput
         Where there are more or fewer names than values.
     """
-    width, filled = run.width, len(run.kinds.rstrip(MISSING))
-    rows, commented = _rows_above(head, run), _commented(head, run)
-    if commented and not (rows and filled <= len(_trimmed(rows[0][1])) <= width):
-        # Words further up that do not fit are a preamble.
-        rows = commented
-    elif commented and len(rows) == 1 and _all_units(commented[0][1], filled) and commented[0][0] > rows[0][0]:
-        rows = [commented[0], *rows]
+    filled = len(run.kinds.rstrip(MISSING))
+    rows = _chosen(_rows_above(head, run), _commented(head, run), filled, run.width)
     if not rows:
         return _unnamed(head, run)
-    units = [""] * width
-    notes: list[str] = []
-    used = [rows[0]]
-    rate = None
-    index, cells = rows[0]
-    if len(rows) > 1 and _all_units(cells, filled):
-        units, place, rate = [_bare(cell) for cell in spread(cells, width)], "under", _increment(rows[1][1], cells, filled)
-        index, cells = rows[1]
-        used.append(rows[1])
-    elif len(rows) > 1 and _all_units(rows[1][1], filled) and not _all_units(cells, filled):
-        units, place = [_bare(cell) for cell in spread(rows[1][1], width)], "above"
-        used.append(rows[1])
-    if len(used) > 1:
-        notes.append(f"the row of units {place} the header ({listed(each or '-' for each in units)}) is used")
+    titled, units, place = _with_units(rows, filled)
+    index, cells = titled
+    rate = _increment(cells, units[1], filled) if units and place == "under" else None
     cells = cells[:filled] if rate else fit_names(cells, head, index, run, where)
-    width = len(cells)
-    following = [each for each in rows if each[0] < min(row for row, _ in used)]
-    if len(set(filter(None, cells))) < len([cell for cell in cells if cell]) and following and _groups(following[0][1], width):
-        group = _filled(spread(following[0][1], width))
-        cells = [f"{above}/{name}" if above else name for above, name in zip(group, cells, strict=True)]
+    used, notes = [titled], []
+    behind = [""] * len(cells)
+    if units:
+        used.append(units)
+        behind = [_bare(cell) for cell in spread(units[1], len(cells))[: len(cells)]]
+        notes.append(f"the row of units {place} the header ({listed(each or '-' for each in behind)}) is used")
+    group = next((row for row in rows if row[0] < min(each[0] for each in used)), None)
+    named = [cell for cell in cells if cell]
+    if group and len(set(named)) < len(named) and _groups(group[1], len(cells)):
+        groups = _filled(spread(group[1], len(cells)))
+        cells = [f"{above}/{name}" if above else name for above, name in zip(groups, cells, strict=True)]
         notes.append(f"the row above the header names groups, so columns are called {next(filter(None, cells))} and so on")
-        used.append(following[0])
-    names = tuple(name or f"column {place}" for place, name in enumerate(cells, 1))
-    stated = tuple(unit or split_unit(name)[1] for unit, name in zip([*units, *[""] * width], names, strict=False))
-    first = min(row for row, _ in used)
-    texts = tuple(head.lines[row].text.strip(" \t\r\n\ufeff") for row, _ in used)
-    return Names(names, stated, first, head.lines[index].number, texts, tuple(notes), rate)
+        used.append(group)
+    names = tuple(name or f"column {number}" for number, name in enumerate(cells, 1))
+    return Names(
+        names=names,
+        units=tuple(unit or split_unit(name)[1] for unit, name in zip(behind, names, strict=True)),
+        first=min(row for row, _ in used),
+        line=head.lines[index].number,
+        texts=tuple(head.lines[row].text.strip(" \t\r\n\ufeff") for row, _ in used),
+        notes=tuple(notes),
+        rate_hz=rate,
+    )
+
+
+def _chosen(rows: list[Row], commented: list[Row], filled: int, width: int) -> list[Row]:
+    """Rows of words or those in comments: words further up that do not fit the values are a preamble."""
+    if commented and not (rows and filled <= len(_trimmed(rows[0][1])) <= width):
+        return commented
+    if commented and len(rows) == 1 and _all_units(commented[0][1], filled) and commented[0][0] > rows[0][0]:
+        return [commented[0], *rows]
+    return rows
+
+
+def _with_units(rows: list[Row], filled: int) -> tuple[Row, Row | None, str]:
+    """The row of names, the row of units if there is one, and whether that stands "under" the names or "above" them."""
+    if len(rows) > 1 and _all_units(rows[0][1], filled):
+        return rows[1], rows[0], "under"
+    if len(rows) > 1 and _all_units(rows[1][1], filled):
+        return rows[0], rows[1], "above"
+    return rows[0], None, ""
 
 
 def _trimmed(cells: list[str]) -> list[str]:
@@ -86,9 +111,9 @@ def _trimmed(cells: list[str]) -> list[str]:
     return cells if not cells or cells[-1] else _trimmed(cells[:-1])
 
 
-def _rows_above(head: Head, run: Run) -> list[tuple[int, list[str]]]:
-    """Up to three rows of words right above the values, the nearest first; (index of the line, cells)."""
-    rows: list[tuple[int, list[str]]] = []
+def _rows_above(head: Head, run: Run) -> list[Row]:
+    """Up to three rows of words right above the values, the nearest first."""
+    rows: list[Row] = []
     for index in reversed(range(run.first)):
         line = head.lines[index]
         if head.passed(index, run.separator) or MARKER.fullmatch(line.text.strip()) or not line.text.strip("-=+|: \t\r\n"):
@@ -121,12 +146,12 @@ def _row_of_words(text: str, run: Run) -> list[str] | None:
     return cells
 
 
-def _commented(head: Head, run: Run) -> list[tuple[int, list[str]]]:
+def _commented(head: Head, run: Run) -> list[Row]:
     """Rows of names and units that stand in comments, as numpy.savetxt and MATLAB write them; the nearest first.
 
     They are the last comments above the values: others, of as many words by chance, are prose.
     """
-    rows: list[tuple[int, list[str]]] = []
+    rows: list[Row] = []
     for index in reversed(range(run.first)):
         if head.lines[index].blank or not bare_comment(head.lines[index].text).strip("-=* \t"):
             continue
@@ -158,7 +183,7 @@ def _commented_cells(head: Head, index: int, run: Run) -> list[str] | None:
     return None
 
 
-def _name_by_name(head: Head, run: Run) -> list[tuple[int, list[str]]]:
+def _name_by_name(head: Head, run: Run) -> list[Row]:
     """Names that stand in as many comments right above the values, one in each."""
     lines = range(run.first - run.width, run.first)
     if run.width < 2 or lines[0] < 0 or not all(head.lines[index].comment for index in lines):

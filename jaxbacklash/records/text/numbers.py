@@ -38,6 +38,7 @@ _MARKS = {
 }
 _TRUTH = {"true": 1.0, "false": 0.0}
 _NAN = "nan"
+_OF_COMMAS = frozenset("0123456789+-eE,")
 
 LONG = re.compile(r"\s*[-+]?\d{17,}\s*")
 """Whole numbers beyond what double precision holds exactly (2^53)."""
@@ -165,8 +166,24 @@ def _tidy(text: str) -> str:
     return _NAN if text.lower() in ABSENT else text
 
 
+def _of_decimal_commas(texts: Sequence[str]) -> Cells | None:
+    """A column of nothing but digits, signs and decimal commas, judged in a fraction of the time; None for any other."""
+    if not set("".join(texts)) <= _OF_COMMAS:
+        return None
+    try:
+        for text in texts:
+            float(text.replace(",", "."))
+    except ValueError:
+        return None
+    proved = any("," in text and not _BY_POINT(text) for text in texts)
+    return Cells(texts, comma=True, proof=frozenset(",")) if proved else None
+
+
 def judged(texts: Sequence[str]) -> Cells:
     """What the cells of a column can mean."""
+    quick = _of_decimal_commas(texts)
+    if quick is not None:
+        return quick
     tidy = [_tidy(text) for text in texts]
     filled = [(row, text) for row, text in enumerate(tidy) if text != _NAN]
     column = Cells(tidy)
