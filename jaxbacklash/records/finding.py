@@ -51,6 +51,6 @@ class Finding:
         """The whole sentence, for the file called ``where``; one that refuses or asks says how to answer it."""
         ways = [self.remedy] if self.remedy else []
         if self.action != WARN:
-            ways.append(f"{self.otherwise or f'--accept {self.kind}'}{' if it is right as it is' if ways else ''}")
+            ways.append(f"{self.otherwise or f'--accept {self.kind}'} if it is right as it is")
         place = f"{where}, column {self.channel}" if self.channel else where
         return f"{place}: {self.found}{'; pass ' if ways else ''}{', or '.join(ways)}."

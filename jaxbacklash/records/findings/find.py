@@ -49,23 +49,24 @@ def find(
     channels = {name: values for name, values in channels.items() if values.size >= SHORTEST}
     if not channels:
         return []
-    found = quantities.quantities(channels, options, units_stated)
-    if any(one.kind == "degrees" for one in found) and (other := relations.instead_of_degrees(channels, extras)):
-        found = [*(one for one in found if one.kind != "degrees"), *other]
+    found: list[Finding] = []
     # What one check finds would set off the next: a code stands out, a wrap shifts, and neither follows anything. So a channel is
     # looked at further once it is mended, and the whole record once no channel waits for an answer.
-    for checks in (jumps.known_wraps, spikes.codes, jumps.wraps, held.held, spikes.spikes):
-        new = _open(
-            checks({name: values for name, values in channels.items() if name not in _waiting(found)}), options, units_stated
-        )
+    for check in (jumps.known_wraps, spikes.codes, jumps.wraps, held.held, spikes.spikes):
+        new = _open(check(_others(channels, found)), options, units_stated)
         channels = mend.after(t, channels, {}, new)[1] if new else channels
         found += new
-    if not _waiting(found):
-        odd = limits.clipped(channels) or held.held_rows(channels) or jumps.shifts(t, channels)
-        found += _open(odd, options, units_stated)
-        found += _open(answers.answers(t, channels), options, units_stated)
-    if not _waiting(found):
-        found += relations.relations(channels, extras)
+    new = _open(quantities.quantities(_others(channels, found), options, units_stated), options, units_stated)
+    if not found and any(one.kind == "degrees" for one in new):
+        new = _open(relations.instead_of_degrees(channels, extras), options, units_stated) or new
+    found += new
+    for whole in (
+        lambda: limits.clipped(channels) or held.held_rows(channels) or jumps.shifts(t, channels),
+        lambda: relations.relations(channels, extras),
+        lambda: answers.answers(t, channels),
+    ):
+        if not _waiting(found):
+            found += _open(whole(), options, units_stated)
     return _open(found, options, units_stated)
 
 
@@ -84,6 +85,11 @@ def find_in_times(t: np.ndarray, options: ReadOptions, *, units_stated: frozense
         About the channel "t".
     """
     return _open(stamps.stamps(t), options, units_stated)
+
+
+def _others(channels: Mapping[str, np.ndarray], found: list[Finding]) -> dict[str, np.ndarray]:
+    """The channels about which nothing is refused or asked yet."""
+    return {name: values for name, values in channels.items() if name not in _waiting(found)}
 
 
 def _waiting(found: list[Finding]) -> set[str]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from jaxbacklash.records.finding import ASK, WARN, Finding
 
-from .local import level, listed_rows, quantum, runs, surprise
+from .local import SURPRISE_OF_NOISE, listed_rows, quantum, runs, surprise
 
 HELD_ROWS = 4
 """Equal rows from which on they count as filled with the last one, where they end in a jump."""
@@ -20,6 +20,8 @@ FEW_STALE = 3
 """Stale samples that are not spoken of: fewer do no harm that can be told from chance."""
 BY_CHANCE = 3.0
 """Times the repeats that counting brings by chance that there are at least."""
+FINE, BLOCK = 0.2, 32
+"""Share of the noise below which a count is fine, and samples of a stretch in which the noise is looked at."""
 MOST = 0.2
 """Share of the samples up to which they are called stale; beyond it the channel is coarse or at rest."""
 
@@ -43,7 +45,7 @@ def held(channels: Mapping[str, np.ndarray]) -> list[Finding]:
             found.append(Finding("held", ASK, name, what, f"--despike {name}", size=float(every)))
             continue
         stale = np.setdiff1d(stale_rows(values), lost)
-        if stale.size:
+        if stale.size >= FEW_STALE:
             what = f"{listed_rows(stale)} repeat{'s' if stale.size == 1 else ''} the value before while the motion goes on"
             few = stale.size <= max(3, 1e-3 * values.size)
             rest = "; bridged by the samples around" if few else ""
@@ -79,17 +81,28 @@ def stale_rows(values: np.ndarray) -> np.ndarray:
     """Rows (from 0) that repeat the value before though the channel is too finely read, or moves too fast, for that by chance."""
     none = np.zeros(0, dtype=int)
     steps = np.diff(values)
-    still = np.flatnonzero(steps == 0.0) + 1
+    # Longer runs are a rest, or what `held_rows` speaks of.
+    length = runs(steps == 0.0)[1]
+    still = np.flatnonzero(steps == 0.0)[np.repeat(length < HELD_ROWS, length)] + 1
     if still.size < FEW_STALE or still.size > MOST * values.size or refreshed_every(values) > 1:
         return none
-    count, noise = quantum(values), level(surprise(values))
-    # Noise alone lands twice on one count in this share of the rows.
-    if still.size > FEW_STALE + BY_CHANCE * values.size * count / max(2 * np.sqrt(np.pi) * noise, 1e-300):
-        return still
+    count = quantum(values)
+    single = np.abs(np.abs(steps) - count) < 0.5 * count
+    # Where noise is many counts even at the quietest, repeats are by chance half as many as steps of a single count to and fro.
+    if count < FINE * _quietest(values) and still.size >= FEW_STALE + BY_CHANCE * np.count_nonzero(single) / 2:
+        # A limit that is met again and again is another finding, see `limits`.
+        return still[(values[still] < values.max()) & (values[still] > values.min())]
     rows = _overtaken(values, steps == 0.0, count)
     # Samples that move by a single count amid fast motion are as rare as those that do not move at all, but for stale ones.
-    expected = _overtaken(values, np.abs(np.abs(steps) - count) < 0.5 * count, count).size / 2
+    expected = _overtaken(values, single, count).size / 2
     return rows if rows.size >= FEW_STALE + BY_CHANCE * expected else none
+
+
+def _quietest(values: np.ndarray) -> float:
+    """The noise of a channel where it moves least: the lowest tenth of its stretches."""
+    r = np.abs(surprise(values))
+    blocks = r[: r.size // BLOCK * BLOCK].reshape(-1, BLOCK)
+    return float(np.quantile(np.median(blocks, axis=1), 0.1)) / (0.6745 * SURPRISE_OF_NOISE)
 
 
 def _overtaken(values: np.ndarray, small: np.ndarray, count: float) -> np.ndarray:

@@ -107,7 +107,7 @@ def shifts_of(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     rows = rows[(rows >= 3) & (rows < values.size - 5)]
     if not rows.size:
         return none
-    pattern = np.array([0.0, -1.0, 3.0, -3.0, 1.0, 0.0]) / 6.0
+    pattern = np.array([0.0, 1.0, -3.0, 3.0, -1.0, 0.0]) / 6.0
     seen = r[rows[:, None] + np.arange(-2, 4)]
     sizes = seen @ pattern / (pattern @ pattern)
     left = np.sqrt(np.mean((seen - sizes[:, None] * pattern) ** 2, axis=1))

@@ -81,13 +81,12 @@ RULES: dict[str, Rule] = {
         ASK,
         "--sign",
     ),
-    "absolute": Rule("z that follows x one to one in slow motion: it is y", "as for a gear", ASK, "--columns"),
+    "absolute": Rule("z that follows x one to one in slow motion: it is y", "as for a gear", ASK),
     "contradiction": Rule("x, y and z all present, z not y - x", "a tenth of z's own standard deviation", WARN),
     "axes": Rule(
         "x, y and z all present and no one joint's: three axes of an accelerometer",
         "0.7 of z's own standard deviation",
         ASK,
-        "--columns",
     ),
     "quantity": Rule("a position read from a column named as an acceleration or a rate of turn", "its name", ASK),
     "degrees": Rule(
@@ -140,7 +139,6 @@ def silenced(kind: str, channel: str, options: ReadOptions, units_stated: frozen
         "--rate": options.rate is not None,
         "--unit": channel in units_stated,
         "--from": options.start is not None,
-        "--columns": channel in options.columns,
     }[flag]
 
 

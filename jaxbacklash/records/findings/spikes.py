@@ -94,7 +94,7 @@ def code_rows(values: np.ndarray) -> tuple[np.ndarray, str]:
 
 
 def _zeros(values: np.ndarray) -> np.ndarray:
-    """Rows of exactly 0 that their neighbours contradict; all such rows, once three are sure."""
+    """Rows of exactly 0 that their neighbours contradict; all such rows where a finely read channel has three of them."""
     zero = values == 0.0
     count = np.count_nonzero(zero)
     if not 0 < count < MOST * values.size:
@@ -114,13 +114,13 @@ def _zeros(values: np.ndarray) -> np.ndarray:
     )
     usual = np.maximum(usual, np.abs(after - before) / (last - first + 2))
     nearest = np.minimum(np.abs(before), np.abs(after))
+    off = (before * after > 0) & (nearest > 2 * np.maximum(usual, quantum(values)))
     # A coarse encoder's noise is counts to and fro, and rests in between.
-    sure = (before * after > 0) & (nearest > FROM_ZERO * np.maximum(usual, quantum(values)))
-    if np.count_nonzero(sure) >= 3:
-        # So finely read that hardly a crossing of zero hits it: then the others are failed readings too.
-        crossings = np.count_nonzero(values[1:] * values[:-1] < 0)
-        hits = crossings * quantum(values) / max(float(np.median(steps)), 1e-300)
-        sure |= (np.abs(before + after) / 2 > 2 * usual) | (hits < 0.5)
+    sure = off & (nearest > FROM_ZERO * np.maximum(usual, quantum(values)))
+    # So finely read that hardly a crossing of zero hits it: then zeros that are not near it, and few others, are failed readings.
+    hits = np.count_nonzero(values[1:] * values[:-1] < 0) * quantum(values) / max(float(np.median(steps)), 1e-300)
+    if np.count_nonzero(off) >= 3 and hits < 0.1 * np.count_nonzero(off):
+        sure = np.ones(first.size, dtype=bool)
     return np.concatenate([_NONE, *(np.arange(a, b + 1) for a, b in zip(first[sure], last[sure], strict=True))])
 
 
