@@ -4,6 +4,7 @@ import gzip
 import re
 import shlex
 import subprocess
+import time
 import zlib
 from pathlib import Path
 
@@ -620,3 +621,12 @@ def test_the_file_says_how_it_was_read(tmp_path):
 def test_prose_is_no_table(tmp_path, content):
     with pytest.raises(BadInput, match=r"no table of numbers|no values below it"):
         read(tmp_path, content)
+
+
+def test_a_table_of_very_many_columns_is_seen_quickly(tmp_path):
+    values = np.round(np.random.default_rng(0).normal(size=(90, 10_000)), 3)
+    lines = [",".join(f"c{column}" for column in range(values.shape[1])), *(",".join(map(str, row)) for row in values.tolist())]
+    start = time.process_time()
+    table = read(tmp_path, "\n".join(lines) + "\n")
+    assert time.process_time() - start < 20.0
+    np.testing.assert_array_equal(table.columns[-1].values, values[:, -1])

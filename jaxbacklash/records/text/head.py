@@ -16,6 +16,9 @@ WINDOWS = (100, 1200, 10000)
 """Lines looked at first, and as many more where rows of values do not fill the end of what was looked at."""
 
 COMMENT = re.compile(r'\s*(?:"?(?:#(?!N/A|NV|VALUE|DIV|NUM|REF)|%|//)|!(?=\s|$))')
+MOST_LOOKED_AT = 2**21
+"""Characters looked at, however few lines they are."""
+
 LINES_OF_A_CELL = 6
 """A quoted name may span as many lines; a quotation mark without an end within them is an inch."""
 
@@ -68,10 +71,12 @@ class Run:
 
 
 def read_lines(file: TextIO, first: int, count: int, where: str) -> list[Line]:
-    """Up to ``count`` lines from line ``first`` on; refuses one that is too long for a line of a table."""
-    lines = []
+    """Up to ``count`` lines from line ``first`` on, fewer where they are long; refuses one too long for a line of a table."""
+    lines: list[Line] = []
+    left = MOST_LOOKED_AT
     for number in range(first, first + count):
-        text = file.readline(LONGEST_LINE + 1)
+        text = file.readline(LONGEST_LINE + 1) if left > 0 else ""
+        left -= len(text)
         if not text:
             break
         if len(text) > LONGEST_LINE:

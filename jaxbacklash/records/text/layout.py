@@ -51,8 +51,14 @@ class Layout:
         The lines of values that were looked at.
     repeated : tuple of str
         Lines of the header and the units, which may come again where logs were joined.
+    passed : str
+        Numbers of the lines above the table that are passed over; empty where there are none.
     notes : tuple of str
+        As in `Table`.
     rate_hz : float or None
+        Samples per second, where a line states it.
+    whole : bool
+        Whether the lines that were looked at are all there are.
     """
 
     source: Source
@@ -69,6 +75,7 @@ class Layout:
     passed: str
     notes: tuple[str, ...]
     rate_hz: float | None
+    whole: bool
 
     def details(self, mark: str, skip: int) -> dict[str, str]:
         """How the file is read, for a person; ``mark`` is the decimal mark, ``skip`` the lines passed over unseen."""
@@ -101,7 +108,7 @@ def find_layout(source: Source, skip: int) -> Layout:
         Where there is no table: only blank lines, comments, words, or a header and nothing below it.
     """
     where = str(source.path)
-    head, run = _look(source, skip)
+    head, run, whole = _look(source, skip)
     if run is None or _is_prose(head, run):
         raise _no_table(head, where, skip)
     first = _beginning(head, run, where)
@@ -139,11 +146,12 @@ def find_layout(source: Source, skip: int) -> Layout:
         passed=passed,
         notes=tuple(notes),
         rate_hz=rate,
+        whole=whole,
     )
 
 
-def _look(source: Source, skip: int) -> tuple[Head, Run | None]:
-    """As many lines as are needed to see the table, and its first rows."""
+def _look(source: Source, skip: int) -> tuple[Head, Run | None, bool]:
+    """As many lines as are needed to see the table, its first rows, and whether these are all lines of the file."""
     where = str(source.path)
     lines: list[Line] = []
     with source.lines(skip) as file:
@@ -153,7 +161,7 @@ def _look(source: Source, skip: int) -> tuple[Head, Run | None]:
             lines += more
             stated = STATED_SEPARATOR.fullmatch(lines[0].text) if lines else None
             head = Head(with_whole_cells(lines[1:] if stated else lines))
-            run = head.best((_mark(stated[1]),) if stated else SEPARATORS)
+            run = (head.best((_mark(stated[1]),)) if stated else None) or head.best(SEPARATORS)
             ended = len(more) < wanted
             if ended or (
                 run
@@ -162,7 +170,8 @@ def _look(source: Source, skip: int) -> tuple[Head, Run | None]:
                 and all(head.passed(i, run.separator) for i in range(run.last + 1, len(head.lines)))
             ):
                 break
-    return head, run
+        whole = not file.read(1)
+    return head, run, whole
 
 
 def _mark(separator: str) -> str | None:

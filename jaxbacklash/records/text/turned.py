@@ -19,7 +19,7 @@ MOST_CHANNELS, FEWEST_SAMPLES = 40, 64
 def lies_on_its_side(layout: Layout) -> bool:
     """Whether lines are channels: a name and then numbers, many more than there are lines."""
     wide = len(layout.kinds) > FEWEST_SAMPLES and set(layout.kinds[1:]) <= {NUMBER, "-"} and layout.kinds[0] in (WORD, NUMBER)
-    return wide and 1 < len(layout.sample) <= MOST_CHANNELS and layout.header_line is None
+    return wide and layout.whole and 1 < len(layout.sample) <= MOST_CHANNELS and layout.header_line is None
 
 
 def read_turned(layout: Layout, decimal: str | None) -> Table:
