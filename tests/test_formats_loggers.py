@@ -2,6 +2,7 @@
 
 import builtins
 import importlib
+import importlib.util
 import shlex
 import subprocess
 import warnings
@@ -18,6 +19,9 @@ from jaxbacklash.records.table import Table
 
 from .logger_files import NAMED, RADIANS, RATE, UNITLESS, WRITERS, course, write_mdf, write_tdms, write_uff
 from .test_formats import refused, table_of
+
+APART = ("rec.mf4", "rec.mdf")
+"""Read in a process of their own, a second each."""
 
 
 def attempt(path: Path) -> Table | str | None:
@@ -69,7 +73,7 @@ def test_a_file_is_known_by_its_content_too(files, name, tmp_path):
 @pytest.mark.parametrize("name", WRITERS)
 def test_a_file_cut_off_anywhere_ends_in_a_sentence_or_in_what_is_there(files, name, tmp_path, capfd):
     whole = (files / name).read_bytes()
-    for part in (0.02, 0.3, 0.6, 0.97):
+    for part in (0.6,) if name in APART else (0.02, 0.3, 0.6, 0.97):
         path = tmp_path / name
         path.write_bytes(whole[: int(part * len(whole))])
         found = attempt(path)
@@ -89,7 +93,7 @@ def test_bytes_turned_at_random_never_end_in_a_traceback(files, name, tmp_path):
     rng = np.random.default_rng(3)
     whole = np.frombuffer((files / name).read_bytes(), dtype=np.uint8)
     path = tmp_path / name
-    for _ in range(12):
+    for _ in range(2 if name in APART else 12):
         changed = whole.copy()
         # Half of them near the beginning, where formats keep what they say of themselves.
         places = rng.integers(0, min(whole.size, rng.choice([400, whole.size])), size=4)
@@ -119,8 +123,18 @@ def test_a_missing_library_is_named_with_the_command_that_installs_it(files, nam
             raise ImportError(wanted)
         return real(wanted, *rest)
 
+    found = importlib.util.find_spec
     monkeypatch.setattr(importlib, "import_module", without)
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name, *rest: None if name == module else found(name, *rest))
     refused(files / name, package, 'pip install "jaxbacklash[io]"')
+
+
+def test_a_library_that_ends_its_process_ends_in_a_sentence(files, tmp_path, monkeypatch):
+    package = tmp_path / "asammdf"
+    package.mkdir()
+    (package / "__init__.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    refused(files / "rec.mf4", "damaged or no MDF file")
 
 
 def test_a_missing_library_for_tables_of_matlab_is_named(tmp_path, monkeypatch):

@@ -8,12 +8,15 @@ from typing import Any
 import numpy as np
 
 from ..table import Table
+from .apart import read_apart
 from .clocks import group_columns, with_common_time
-from .guard import bounded, guarded, library
+from .guard import bounded, guarded, library, needed
+
+KIND, WANTED = "a file that is damaged or no MDF file", "a complete .mf4 file; copy it again"
 
 
 def read(path: Path) -> Table:
-    """The channels of a measurement data file.
+    """The channels of a measurement data file, read in a process of its own: damage may end that process.
 
     Parameters
     ----------
@@ -30,11 +33,17 @@ def read(path: Path) -> Table:
     BadInput
         asammdf is missing, or the file is damaged.
     """
+    needed("asammdf", "asammdf", path, "an MDF measurement file")
+    return read_apart("mdf", path, KIND, WANTED)
+
+
+def read_here(path: Path) -> Table:
+    """What `read` returns, read in this process."""
     asammdf = library("asammdf", "asammdf", path, "an MDF measurement file")
     found: list[tuple[str, str, np.ndarray, str, np.ndarray | None]] = []
     left_out: dict[str, str] = {}
     with (
-        guarded(path, "a file that is damaged or no MDF file", "a complete .mf4 file; copy it again"),
+        guarded(path, KIND, WANTED),
         asammdf.MDF(path) as file,
     ):
         groups = file.groups
