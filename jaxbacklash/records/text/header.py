@@ -18,6 +18,9 @@ MARKER = re.compile(
 """Lines such as "[Data]" that stand between names and values."""
 
 
+LABEL = re.compile(r"^\s*(?:units?|einheit(?:en)?|names?|columns?|fields?|channels?|variables?|header)\s*[:=]\s*", re.IGNORECASE)
+"""How a comment with names or units may begin: "# columns: t, x, z"."""
+
 Row = tuple[int, list[str]]
 """A row of words: the index of its line in the head, and its cells."""
 
@@ -171,7 +174,7 @@ def _commented_cells(head: Head, index: int, run: Run) -> list[str] | None:
     text = head.lines[index].text
     if not head.passed(index, run.separator):
         return None
-    bare = bare_comment(text)
+    bare = LABEL.sub("", bare_comment(text))
     for separator in (run.separator, *SEPARATORS):
         cells = split(bare.strip(" ") if separator else bare, separator)
         if (
