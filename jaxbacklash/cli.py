@@ -338,14 +338,16 @@ def demo(
 
 
 def _plain_warning(message: Any, category: Any, filename: str, lineno: int, file: Any = None, line: Any = None) -> None:
-    print(f"warning: {message}", file=sys.stderr)
+    if sys.stderr is not None:
+        print(f"warning: {' '.join(str(message).split())}", file=sys.stderr)
 
 
 def main() -> None:
     """Run the command line; every error ends in one sentence and an exit code, see `commands.outcome`."""
-    from .commands.outcome import let_go_of_output, say, told
+    from .commands.outcome import fill_closed_streams, let_go_of_output, say, told
     from .stopping import end_when_told
 
+    fill_closed_streams()
     end_when_told()
     warnings.showwarning = _plain_warning
     warnings.filterwarnings("ignore", category=RuntimeWarning)  # of numpy's steps; what a command tells is finite, or an error

@@ -3,6 +3,7 @@
 import os
 import signal
 import time
+from pathlib import Path
 
 import pytest
 
@@ -24,14 +25,25 @@ def stopped(folder, name, after, *signals):
     write_record_csv(folder / "r.csv", seconds=8.0)
     (folder / "m.toml").write_text(MODEL)
     run = jaxbacklash(*COMMANDS[name], cwd=folder)
+    begun(run)
     time.sleep(after)
     if run.poll() is not None:
         pytest.skip(f"{name} was over before")
-    begun = time.monotonic()
+    told = time.monotonic()
     for number in signals:
         run.send_signal(number)
     _, err = run.communicate(timeout=60)
-    return run.returncode, time.monotonic() - begun, err.decode()
+    return run.returncode, time.monotonic() - told, err.decode()
+
+
+def begun(run):
+    """Wait until the command takes signals: on a busy machine Python itself takes seconds to start."""
+    state, until = Path(f"/proc/{run.pid}/status"), time.monotonic() + 30.0
+    while state.exists() and run.poll() is None and time.monotonic() < until:
+        taken = next((line.split()[1] for line in state.read_text().splitlines() if line.startswith("SigCgt")), "0")
+        if int(taken, 16) >> (signal.SIGTERM - 1) & 1:
+            return
+        time.sleep(0.02)
 
 
 def half_written(folder):
@@ -90,7 +102,7 @@ def test_a_signal_that_is_ignored_stays_ignored(tmp_path):
         run = jaxbacklash("simulate", "m.toml", "--duration", "3", "--rate", "100", "--out", "s.csv", cwd=tmp_path)
     finally:
         signal.signal(signal.SIGHUP, before)
-    time.sleep(1.0)
+    begun(run)
     run.send_signal(signal.SIGHUP)
     run.communicate(timeout=60)
     assert run.returncode == 0

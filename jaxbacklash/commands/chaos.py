@@ -14,8 +14,11 @@ from ..records import MeasuredSeries
 from ..report.chaos_result import chaos_json
 from ..timeseries import chaos
 from .common import json_text, out_folder, progress, write_text
+from .ranges import bounded
 from .reading import Reading
 
+MOST = 60_000_000
+"""Values of all surrogates together at most, 0.5 GB: the usual 39 of a million and a half samples."""
 DRIVES = {"x": "base motion", "F": "force"}
 
 
@@ -33,6 +36,8 @@ def run(
 ) -> None:
     """Read one channel, judge it, print; write the result and the report when a folder is given."""
     source = reading.series(path, channel)
+    bounded(f"--surrogate-count {count} of {source.values.size} samples", count * source.values.size, MOST, "values in all",
+            "take fewer surrogates, or a lower rate with --resample-rate")  # fmt: skip
     folder = out_folder(out)
     with progress(as_json) as tell:
         try:

@@ -72,7 +72,7 @@ def _unforeseen(error: BaseException) -> str:
 
 def say(sentence: str, code: int) -> int:
     """One line on stderr; returns the exit code."""
-    if sentence:
+    if sentence and sys.stderr is not None:  # it may have been closed before the command began
         print(" ".join(sentence.splitlines()), file=sys.stderr)  # blanks stay: names of files may hold two
     return code
 
@@ -81,3 +81,13 @@ def let_go_of_output() -> None:
     """Nothing more is written to stdout, whose reader has gone or whose disk is full: Python would complain at its end."""
     nowhere: Any = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
+
+
+def fill_closed_streams() -> None:
+    """Put nothing in the place of streams that were closed before the command began: else the next file opened would stand there,
+    and be written to by whatever complains on stderr."""
+    for number in (0, 1, 2):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
