@@ -22,6 +22,7 @@ from .test_formats import refused, table_of
 
 APART = ("rec.mf4", "rec.mdf")
 """Read in a process of their own, a second each."""
+QUICK = [pytest.param(name, marks=pytest.mark.slow) if name in APART else name for name in WRITERS]
 
 
 def attempt(path: Path) -> Table | str | None:
@@ -63,7 +64,7 @@ def test_each_format_gives_times_motions_and_units(files, name, capfd):
     assert table.rate_hz is None or table.rate_hz == pytest.approx(RATE, rel=1e-9)
 
 
-@pytest.mark.parametrize("name", WRITERS)
+@pytest.mark.parametrize("name", QUICK)
 def test_a_file_is_known_by_its_content_too(files, name, tmp_path):
     path = tmp_path / "record.bin"
     path.write_bytes((files / name).read_bytes())
@@ -88,7 +89,7 @@ def test_a_file_cut_off_anywhere_ends_in_a_sentence_or_in_what_is_there(files, n
     assert not capfd.readouterr().err
 
 
-@pytest.mark.parametrize("name", WRITERS)
+@pytest.mark.parametrize("name", QUICK)
 def test_bytes_turned_at_random_never_end_in_a_traceback(files, name, tmp_path):
     rng = np.random.default_rng(3)
     whole = np.frombuffer((files / name).read_bytes(), dtype=np.uint8)
