@@ -8,11 +8,14 @@ import dataclasses
 import gzip
 import io
 import itertools
+import os
 import shlex
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO, TextIO, cast
+
+from jaxbacklash.errors import BadInput
 
 from ..checks import wrong
 
@@ -21,6 +24,9 @@ SNIFFED_BYTES = 65536
 
 MOST_UNPACKED = 512 * 2**20
 """A packed file that holds more bytes of text than this is refused: it might have no end. Ten million rows are within it."""
+
+MOST_PACKED = 1032
+"""Deflate makes nothing smaller than this many times: a size beyond it at the end of a damaged file is no size."""
 
 LONGEST_LINE = 2**20
 """A line of more characters than this is none of a table with one line a sample."""
@@ -80,8 +86,7 @@ class Bytes(io.RawIOBase):
             raise wrong(str(self.path), f"a damaged gzip file ({why})", "one that can be unpacked") from why
         self.count += len(data)
         if self.packed and self.count > MOST_UNPACKED:
-            found = f"a gzip file of more than {MOST_UNPACKED >> 20} MB of text"
-            raise wrong(str(self.path), found, f"less; unpack it first with gunzip -k {shlex.quote(str(self.path))}")
+            raise _too_long(self.path)
         self.feeds += data.count(b"\n")
         self.returns += data.count(b"\r")
         self.tail = (self.tail + data if len(data) < 1024 else data)[-4096:]
@@ -93,6 +98,12 @@ class Bytes(io.RawIOBase):
         mark = b"\n" if self.feeds else b"\r"
         below = self.tail[len(self.tail.rstrip(b" \t\r\n\f\v\0\x1a")) :]
         return (self.feeds or self.returns) + 1 - below.count(mark)
+
+
+def _too_long(path: Path) -> BadInput:
+    """The refusal of a packed file that holds too much."""
+    found = f"a gzip file of more than {MOST_UNPACKED >> 20} MB of text"
+    return wrong(str(path), found, f"less; unpack it first with gunzip -k {shlex.quote(str(path))}")
 
 
 def last_line(file: TextIO) -> int:
@@ -127,7 +138,12 @@ def open_text(path: Path) -> Source:
     """
     with open(path, "rb") as file:
         start = file.read(8)
-    packed = start.startswith(b"\x1f\x8b")
+        packed = start.startswith(b"\x1f\x8b")
+        # A packed file ends with the size of what it holds: one that says so is refused before any of it is kept.
+        size = file.seek(0, os.SEEK_END)
+        file.seek(max(0, size - 4))
+        if packed and MOST_UNPACKED < int.from_bytes(file.read(4), "little") <= size * MOST_PACKED:
+            raise _too_long(path)
     name = next((name for mark, name in PACKED.items() if start.startswith(mark)), None)
     if name == "zip":
         wanted = "a table (unpack it; an Excel workbook keeps its suffix .xlsx, a NumPy archive .npz)"
