@@ -228,6 +228,15 @@ def test_hdf5_never_reads_other_files_nor_what_claims_terabytes(tmp_path):
     with h5py.File(tmp_path / "huge.h5", "w") as file:
         file.create_dataset("x", shape=(10**13,), dtype="f8", chunks=(1000,))
     refused(tmp_path / "huge.h5", "data set x", "8e+04 GB", "shorter record")
+    with h5py.File(tmp_path / "long.h5", "w", libver="latest") as file:
+        file["x"] = X
+        file["x"].attrs["units"] = np.bytes_("d" * 40_000 + "eg")
+    data = (tmp_path / "long.h5").read_bytes()
+    assert table_of(tmp_path / "long.h5").names == ["x"]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("jaxbacklash.records.formats.hdf5.MAX_ATTRIBUTE_BYTES", 1000)
+        assert table_of(tmp_path / "long.h5").columns[0].unit == ""
+    assert len(data) > 40_000
     with h5py.File(tmp_path / "huge.mat", "w", userblock_size=512) as file:
         file.create_dataset("x", shape=(1, 10**13), dtype="f8", chunks=(1, 1000))
     refused(tmp_path / "huge.mat", "array /x", "8e+04 GB")

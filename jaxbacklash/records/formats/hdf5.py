@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from .arrays import MAX_CHANNELS, Columns, named_matrix, tidy
 from .guard import Budget, guarded, library
 
 MAX_DEPTH = 32
+MAX_ATTRIBUTE_BYTES = 1 << 20
 MAX_SETS = 4096
 """Data sets looked at; a file with more is no record."""
 UNITS = ("unit", "units", "unit_string", "Unit", "Units", "UNIT", "UNITS")
@@ -103,6 +105,14 @@ def _unread(item: Any, h5py: Any) -> str:
     return ""
 
 
+def attribute(item: Any, name: str) -> Any:
+    """The value of an attribute; None where there is none, or one that claims to be as long as no name or number is."""
+    if name not in item.attrs:
+        return None
+    found = item.attrs.get_id(name)
+    return item.attrs[name] if found.dtype.itemsize * math.prod(found.shape) <= MAX_ATTRIBUTE_BYTES else None
+
+
 def elsewhere(item: Any) -> bool:
     """Whether the values of a data set stand in another file, which may be any file of the user."""
     return bool(item.external) or (item.is_virtual and any(source.file_name != "." for source in item.virtual_sources()))
@@ -136,7 +146,8 @@ def _add(found: dict[str, tuple[Any, np.ndarray]], columns: Columns, where: str)
 
 def _take_attributes(item: Any, columns: Columns) -> None:
     """The rate, where an attribute states it."""
-    for name, value in item.attrs.items():
+    for name in item.attrs:
+        value = attribute(item, name)
         values = np.asarray(value) if isinstance(value, np.ndarray | np.number) else np.empty(0)
         if values.size == 1 and values.dtype.kind in "fiu":
             columns.take_rate(tidy(name), float(values.ravel()[0]))
@@ -144,7 +155,7 @@ def _take_attributes(item: Any, columns: Columns) -> None:
 
 def _attribute(item: Any, names: tuple[str, ...]) -> str:
     for name in names:
-        value = item.attrs.get(name)
+        value = attribute(item, name)
         if isinstance(value, bytes):
             value = value.decode("utf-8", "replace")
         if isinstance(value, str):
@@ -155,7 +166,7 @@ def _attribute(item: Any, names: tuple[str, ...]) -> str:
 def _attribute_names(item: Any) -> list[str]:
     """Names of a matrix's columns among its attributes."""
     for name in NAMES:
-        value = item.attrs.get(name)
+        value = attribute(item, name)
         if isinstance(value, np.ndarray) and value.ndim == 1 and value.dtype.kind in "OSU":
             return [tidy(one.decode("utf-8", "replace") if isinstance(one, bytes) else str(one)) for one in value]
         if isinstance(value, str) and "," in value:

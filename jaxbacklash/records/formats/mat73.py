@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .guard import Budget, library
-from .hdf5 import elsewhere
+from .hdf5 import attribute, elsewhere
 from .mat_tree import MAX_DEPTH, Instance, Tree, Unread
 
 MAX_CELLS = 4096
@@ -36,7 +36,7 @@ def _item(item: Any, h5py: Any, depth: int, budget: Budget) -> Any:
     """A group is a struct; a data set is an array, text, an array of references (cells, arrays of structs) or an object."""
     if depth > MAX_DEPTH:
         return Unread("values nested deeper than any record is")
-    kind = item.attrs.get("MATLAB_class", b"")
+    kind = attribute(item, "MATLAB_class") or b""
     kind = kind.decode("latin-1") if isinstance(kind, bytes) else str(kind)
     if "MATLAB_object_decode" in item.attrs and kind not in ("", "function_handle"):
         return Instance(kind)
