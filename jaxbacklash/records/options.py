@@ -32,7 +32,8 @@ class ReadOptions:
     sign : frozenset of str
         Channels measured the other way round: turned.
     despike : frozenset of str
-        Channels in which single samples that stand out (spikes, sentinels such as 0 or -9999) are left out.
+        Channels whose samples that were never measured are bridged by the others: spikes, codes such as 0 or -9999, repeats of
+        the sample before. Where a channel has a new value every k-th row only, those rows of the record are kept.
     decimal : str or None
         The decimal mark of a text file, "." or ",", where the file can be read both ways.
     start, stop : float or None

@@ -39,7 +39,7 @@ RULES: dict[str, Rule] = {
     ),
     "shift": Rule(
         "a lasting shift of x, y or z alone, which moves on as before: counts lost",
-        "20 times noise and motion around it, at most 5 of them: more are how a stepper moves",
+        "20 times noise and motion around it, more than lost rows explain, at most 5: more are how a stepper moves",
         ASK,
         "--unwrap",
     ),
@@ -63,7 +63,7 @@ RULES: dict[str, Rule] = {
     ),
     "stale": Rule(
         "samples that repeat the one before amid motion",
-        "motion of 6 counts a sample; a thousandth of the samples is bridged with a warning, more asks",
+        "3 times as many as counting brings by chance; a thousandth of the samples is bridged with a warning, more asks",
         ASK,
         "--despike",
     ),
