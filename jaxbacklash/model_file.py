@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import stat
 import tomllib
 from dataclasses import fields
 from pathlib import Path
@@ -57,10 +58,12 @@ def load_model(path: str | Path) -> System:
     """
     where = _shown(str(path))
     try:
-        if Path(path).is_dir():
-            raise BadInput(f"{where}: is a folder, wanted a model file (TOML)")
-        if (size := Path(path).stat().st_size) > LARGEST:
-            raise BadInput(f"{where}: has {size} bytes, wanted a model file (TOML) of at most {LARGEST}")
+        state = Path(path).stat()
+        if not stat.S_ISREG(state.st_mode):  # a pipe or a device may never end
+            what = "a folder" if stat.S_ISDIR(state.st_mode) else "no regular file"
+            raise BadInput(f"{where}: is {what}, wanted a model file (TOML)")
+        if state.st_size > LARGEST:
+            raise BadInput(f"{where}: has {state.st_size} bytes, wanted a model file (TOML) of at most {LARGEST}")
         text = Path(path).read_text(encoding="utf-8-sig")
         data = tomllib.loads(text)
     except FileNotFoundError:
@@ -129,7 +132,7 @@ def _effect(name: str, entries: Any, where: str) -> AbstractEffect:
     others = {key: _setting(value, f"{where}: [effects.{name}] {key}") for key, value in entries.items() if key in settings}
     try:
         effect = cls(**numbers, **others)
-    except ValueError as error:
+    except (ValueError, LookupError, AttributeError, ArithmeticError) as error:
         raise BadInput(f"{where}: [effects.{name}]: {error}") from None
     except TypeError:
         lacking = sorted((set(described) | set(settings)) - set(entries))

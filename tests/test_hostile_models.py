@@ -1,5 +1,7 @@
 """Model files and simulations at the end of what can be: told in one sentence, and what is written can be read back."""
 
+import os
+
 import numpy as np
 import pytest
 
@@ -67,6 +69,8 @@ BAD = {
     "effect without its values": (MODEL + "[effects.coulomb_joint]\n", "lacks Tc"),
     "effect with one of them": (MODEL + "[effects.dahl]\nFc = 3.0\n", "[effects.dahl] lacks sigma"),
     "effect out of bounds": (MODEL + "[effects.coulomb_joint]\nTc = -3.0\n", "Tc is -3"),
+    "a table without rows": (MODEL + "[effects.learned_torque]\ncoordinates = []\nknots = []\ntable = []\n", "learned_torque"),
+    "a table of words": (MODEL + "[effects.learned_torque]\ncoordinates = 'y'\nknots = 'a'\ntable = 1\n", "learned_torque"),
     "an array of effects": (MODEL + "[[effects]]\nname = 'gravity'\n", "effects is not a table"),
     "an array as a value": (MODEL.replace("2.0", "[2.0]"), "wanted a finite number"),
     "a date": (MODEL.replace("2.0", "2020-01-01"), "wanted a finite number"),
@@ -88,6 +92,9 @@ def test_a_model_file_that_cannot_be_used(tmp_path, text, fragment):
 def test_a_folder_and_a_large_file_are_no_models(tmp_path, monkeypatch):
     with pytest.raises(BadInput, match="is a folder"):
         load_model(tmp_path)
+    os.mkfifo(tmp_path / "pipe.toml")
+    with pytest.raises(BadInput, match="is no regular file"):
+        load_model(tmp_path / "pipe.toml")
     (tmp_path / "m.toml").write_text(MODEL)
     monkeypatch.setattr("jaxbacklash.model_file.LARGEST", 10)
     with pytest.raises(BadInput, match="of at most 10"):
