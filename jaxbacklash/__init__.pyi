@@ -1,3 +1,5 @@
+from .causes import Cause as Cause
+from .causes import find_causes as find_causes
 from .criticism import Findings as Findings
 from .criticism import Latent as Latent
 from .criticism import Ranked as Ranked

@@ -20,7 +20,7 @@ from .bench import Bench, Point
 from .cause import Cause
 from .kinds import Clock, Delay, Inertia, Kind, Scale, Turned
 from .screen import misfit, part_of
-from .shown import Held, HeldStart, Step, stepped
+from .shown import Held, HeldStart, Limit, Step, stepped
 from .words import told
 
 LARGE = 3.0
@@ -34,8 +34,9 @@ MOST = 0.995
 turned sign does to a fit; a wrong inertia took away 0.97 of a missing resonance."""
 PLAIN = 0.03
 """Share of what the weak form leaves from which on a large cause is so plain that no other is looked for."""
-WORTH = 0.95
-"""Share of the sum of squares that the linearisation may leave: a few windows that have gone astray can hold most of it."""
+WORTH, ASTRAY, UNEVEN = 0.6, 0.95, 1.3
+"""Share of the sum of squares that the linearisation may leave; the same where a few windows that have gone astray hold most of
+it, as they do where all windows together miss by so many times what the median window does."""
 LOOKED, TRIED = 2, 10
 """Causes of a sort that are settled by a search, the likeliest; and how many kinds had their chance to fool us."""
 
@@ -88,6 +89,8 @@ def find_causes(fit: Fit, progress: Callable[[str, float], None] = silent) -> li
 def _shown(bench: Bench) -> Iterator[Guess]:
     """Causes that can be read off the samples; the weak form tells where to search from."""
     record = bench.fit.records[0]
+    if len(bench.fit.records) > 1:  # what shows in one need not be in the others
+        return
     for kind in shown_kinds(record):
         for size in kind.coarse(record):
             start = _screened(bench.fit, kind.corrected(record, size).record)
@@ -122,11 +125,12 @@ def _large(bench: Bench) -> Iterator[Guess]:
 
 def _small(bench: Bench) -> Iterator[Guess]:
     """Causes so small that the fit is near its place: by the linearisation."""
+    uneven = bench.fit.score.rms > UNEVEN * bench.fit.score.median
     for kind in kinds_for(bench.fit):
         if kind.measured_only and kind.step(bench.fit.records[0]) > 0.0:
             fall, size, _ = bench.parabola(kind, kind.null, bench.problem, bench.unknowns)
             left = max(1.0 - fall / (2.0 * bench.fit.cost), 0.0)
-            if fall > DECISIVE and left < WORTH:
+            if fall > DECISIVE and left < (ASTRAY if uneven else WORTH):
                 yield Guess(kind, size, None, left)
 
 
@@ -161,7 +165,7 @@ def kinds_for(fit: Fit) -> list[Kind]:
     if record.kind == "base_motion":
         found += [Delay("y", mixed=True), Clock("y", mixed=True)] if own == "z" else []
         found += [Scale("x")]
-    return found
+    return found if record.kind == "base_motion" else [*found, Limit("F")]
 
 
 def started(system: System, start: Start) -> System:

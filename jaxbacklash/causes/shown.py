@@ -94,6 +94,22 @@ class Step(Kind):
         return np.array([sizes[self.at]])
 
 
+@dataclass(frozen=True)
+class Limit(Kind):
+    """The force that was applied is limited, while what was recorded is not: the recorded one is cut off at ``size``."""
+
+    name, unit, measured_only, null = "force_limit", "N m", False, np.inf
+
+    def corrected(self, record: Record, size: float) -> Corrected:
+        return Corrected(record.replace(F=np.clip(record.channels["F"], -size, size)), np.ones(record.samples))
+
+    def coarse(self, record: Record) -> np.ndarray:
+        return float(np.max(np.abs(record.channels["F"]))) * np.linspace(0.9, 0.3, 7)
+
+    def step(self, record: Record) -> float:
+        return 2e-3 * float(np.max(np.abs(record.channels["F"])))
+
+
 def steps(values: np.ndarray) -> tuple[np.ndarray, float]:
     """By how much a channel jumps before each sample (N,), between parabolas through those before and after, and its noise."""
     ahead = _reaching(SIDE)

@@ -114,7 +114,13 @@ def _step(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str, 
     return words, f"--from {when:.6g}", ""
 
 
+def _limit(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str, str, str]:
+    unit = channel_unit("F", translational=fit.translational)
+    words = f"the force that acted is limited to about {size:.3g} {unit}, while F shows what was asked for"
+    return words, "", ""
+
+
 _SAID = {
     "delay": _delay, "clock": _clock, "scale": _scale, "sign": _sign, "inertia": _inertia, "held_samples": _held,
-    "held_start": _held_start, "step": _step,
+    "held_start": _held_start, "step": _step, "force_limit": _limit,
 }  # fmt: skip
