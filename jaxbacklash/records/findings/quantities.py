@@ -55,8 +55,9 @@ def degrees(channels: Mapping[str, np.ndarray], stated: Collection[str]) -> list
         suspects["x"] = (_peak(channels["x"]), MAX_BASE_RAD)
     beyond = [name for name, (peak, most) in suspects.items() if peak > most and name not in stated]
     # A sample that was never measured is no motion; looking for those takes time, so only here.
-    suspects |= {name: (_peak(np.delete(channels[name], bad_rows(channels[name]))),
-        suspects[name][1]) for name in beyond if name != "y"}
+    suspects |= {
+        name: (_peak(np.delete(channels[name], bad_rows(channels[name]))), suspects[name][1]) for name in beyond if name != "y"
+    }
     beyond = [name for name in beyond if suspects[name][0] > suspects[name][1]]
     if not beyond:
         return []

@@ -28,8 +28,14 @@ LIKE_ONE = 1.3
 """Gains between 1/1.3 and 1.3 are how a link follows its base."""
 NEAR = 0.015
 """Share by which the factor of slow motion may miss the true one: near a resonance the link already follows a little more."""
-UNITS = {180.0 / np.pi: "x=deg", np.pi / 180.0: "y=deg", 0.5 / np.pi: "x=rev", 2.0 * np.pi: "y=rev", 1e3: "x=mrad",
-    1e-3: "y=mrad"}
+UNITS = {
+    180.0 / np.pi: "x=deg",
+    np.pi / 180.0: "y=deg",
+    0.5 / np.pi: "x=rev",
+    2.0 * np.pi: "y=rev",
+    1e3: "x=mrad",
+    1e-3: "y=mrad",
+}
 """What x over y is where one of the two is in another unit."""
 GOES_WITH, AGAINST = 0.75, 0.4
 """Coherence from which on, and lag from -x [rad] up to which, z goes against x; play in the joint keeps it from more."""
