@@ -95,6 +95,9 @@ def _walk(name: str, value: Any, leaves: list[tuple[str, Any, str]], depth: int)
         for field, each in value.items():
             _walk(f"{name}.{field}", each, leaves, depth + 1)
     elif isinstance(value, list):
+        if value and all(isinstance(each, str) for each in value):  # a cell of names is one array of text
+            leaves.append((name, np.array(value), ""))
+            return
         if len(value) > MAX_CHANNELS:
             leaves.append((name, Unread(f"an array of {len(value)} structs or cells"), ""))
             return
