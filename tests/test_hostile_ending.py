@@ -2,7 +2,6 @@
 
 import errno
 import os
-import resource
 import subprocess
 import sys
 
@@ -80,8 +79,10 @@ def test_what_is_being_written_is_removed_when_the_process_is_told_to_end(tmp_pa
         end_within(tmp_path / "a.txt")
 
 
-def small_files():
-    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, 20_000))
+def within(shell, *words, cwd):
+    """The command under what a shell does before: limits, closed streams."""
+    run = ["/bin/sh", "-c", f'{shell}; exec "$@"', "sh", sys.executable, "-m", "jaxbacklash.cli", *words]
+    return subprocess.run(run, cwd=cwd, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(ROOT)}, timeout=120)
 
 
 @pytest.mark.slow
@@ -89,29 +90,17 @@ def small_files():
 def test_a_disk_without_room_leaves_nothing_half_written(tmp_path, out):
     (tmp_path / "m.toml").write_text(MODEL)
     (tmp_path / out).write_text("old")
-    run = subprocess.run(
-        [sys.executable, "-m", "jaxbacklash.cli", "simulate", "m.toml", "--duration", "8", "--out", out], cwd=tmp_path,
-        capture_output=True, text=True, preexec_fn=small_files, env={**os.environ, "PYTHONPATH": str(ROOT)},
-    )  # fmt: skip
+    run = within("ulimit -f 40", "simulate", "m.toml", "--duration", "8", "--out", out, cwd=tmp_path)
     assert run.returncode in (1, 2)
     assert "cannot be written (File too large)" in one_sentence(run.stderr)
     assert (tmp_path / out).read_text() == "old"
     assert sorted(os.listdir(tmp_path)) == sorted(["m.toml", out])
 
 
-@pytest.mark.parametrize("closed", [(1,), (2,), (0, 1, 2)])
+@pytest.mark.parametrize("closed", ["exec >&-", "exec 2>&-", "exec <&- >&- 2>&-"])
 def test_streams_that_are_closed_before_it_begins(tmp_path, closed):
     (tmp_path / "m.toml").write_text("[model]\n")
-
-    def close():
-        for number in closed:
-            os.close(number)
-
-    run = subprocess.run(
-        [sys.executable, "-m", "jaxbacklash.cli", "look", "m.toml"], cwd=tmp_path, preexec_fn=close,
-        stdout=subprocess.PIPE if 1 not in closed else None, stderr=subprocess.PIPE if 2 not in closed else None,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-    )  # fmt: skip
+    run = within(closed, "look", "m.toml", cwd=tmp_path)
     assert run.returncode == 2
     assert (tmp_path / "m.toml").read_text() == "[model]\n"
 
