@@ -12,10 +12,14 @@ from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.effects import Contact, Damper
 from jaxbacklash.fitting.answers import check_answers
 from jaxbacklash.fitting.estimates import judge
+from jaxbacklash.fitting.fit import prepare
+from jaxbacklash.fitting.handed_on import led_in
 from jaxbacklash.fitting.hard import reach_of_sampling
-from jaxbacklash.fitting.setup import base_system
+from jaxbacklash.fitting.levenberg import Levenberg, minimise
+from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
 from jaxbacklash.fitting.size import MOST_SAMPLES, check_size, needed_rate
 from jaxbacklash.system import System
+from tests.independent.free_play import decay
 
 NAMES = ("backlash", "stiffness", "damping")
 
@@ -127,8 +131,30 @@ def test_a_search_ends_after_so_many_fits():
 
 
 @pytest.mark.slow
-def test_a_base_motion_misnamed_as_a_decay_ends_with_an_answer():
-    """The first window sticks, and its start is led in by the samples: of z alone, there is no base to add."""
-    record = shaken(own=0.02)
+def test_a_window_of_a_decay_is_led_in_by_its_samples_alone():
+    """Of z alone there is no base to add: of a base motion whose x was named otherwise, the first window sticks."""
+    record = shaken(own=0.02, seconds=3.0)
     alone = jb.Record(record.t, {"z": record.channels["y"] - record.channels["x"]})
-    assert not jb.fit(alone, inertia=2.0).adequate
+    system, free, _ = base_system(alone, "joint", 2.0)
+    windows, _, _ = prepare(system, [alone], None)
+    problem = make_problem(system, windows, free)
+    found = minimise(problem, first_guess(problem), Levenberg(limit=1))
+    starts = led_in(problem, found, np.array([0]))
+    assert abs(starts[0, 0] - alone.channels["z"][0]) < 2e-3
+
+
+@pytest.mark.slow
+def test_contacts_between_two_samples_leave_the_play_told():
+    """Ten thousand times stiffer than the sampling shows, exact from edge to edge: the link turns round within half a sample."""
+    t = np.arange(3000) / 250.0
+    z = decay(t, 0.01 + 1.5e-4, 0.01, 2500.0, 0.05 / 2 / 2500.0) + 1e-4 * np.random.default_rng(0).standard_normal(t.size)
+    found = jb.fit(jb.Record(t, {"z": z}))
+    play, stiffness, damping = (found.parameters[n] for n in NAMES)
+    assert stiffness.value is None
+    assert "contacts last less than 2 samples" in stiffness.why
+    if play.value is None:
+        assert "at most" in play.why
+    else:
+        assert abs(play.value - 0.02) < 4.0 * play.stderr
+    assert damping.value is None
+    assert "what they lose is taken for it" in damping.why

@@ -20,7 +20,7 @@ from .answers import check_answers
 from .equation_error import Start
 from .estimates import UNDETERMINED, Estimate, judge
 from .force import tell_way
-from .hard import SHORTEST, SUSPECT, contact_samples, harder, most_play
+from .hard import SHORTEST, SUSPECT, contact_samples, harder, most_play, travel_in_contact
 from .held import held as is_held
 from .left_over import EXPLAINED, quieter_elsewhere, settle_noise, why_open
 from .lengths import PANELS, longest_panel, score_window, shooting_window
@@ -171,8 +171,8 @@ def fit(
     stderr = dict(zip(names, np.sqrt(np.diag(covariance))))
     per_inertia = inertia is None and chosen[0].kind not in ABSOLUTE
     estimates = judge(fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational, covariance=covariance)
-    if not found.tied and contact_samples(fitted, chosen[0].dt) < SHORTEST:
-        estimates |= _between_samples(estimates, chosen, missed=scored[0].rms > EXPLAINED)
+    if contact_samples(fitted, chosen[0].dt) < SHORTEST:
+        estimates |= _between_samples(estimates, fitted, chosen, missed=scored[0].rms > EXPLAINED)
     if profile:
         estimates = with_profiles(problem, unknowns, estimates, names, stderr, progress)
     marks = list(clock.items())
@@ -203,17 +203,25 @@ def _harder(
     return (other, (begin, *again)) if misfit(other) < misfit(found) else (found, begun)
 
 
-def _between_samples(estimates: dict[str, Estimate], records: Sequence[Record], missed: bool) -> dict[str, Estimate]:
-    """What free windows do not tell where contacts lie between the samples: what is lost in them counts as damping, and where
-    they are ``missed`` the play is not told by them."""
+def _between_samples(
+    estimates: dict[str, Estimate], system: System, records: Sequence[Record], *, missed: bool
+) -> dict[str, Estimate]:
+    """What is not told where contacts lie between the samples: the play by the travel in one, and where they are ``missed`` not
+    at all; and the damping, for which is taken what contacts lose."""
     where = "contacts lie between the samples"
     why = {}
+    open_play = 0.5 * max(travel_in_contact(system, r) for r in records)
+    wider = {
+        name: replace(one, stderr=float(np.hypot(one.stderr, open_play)))
+        for name, one in estimates.items()
+        if name == "backlash" and one.stderr is not None
+    }
     if (damping := estimates.get("damping")) and damping.value is not None:
-        why["damping"] = f"{where}, and what they lose is taken for it: at most {damping.value:.2g} {damping.unit}"
+        why["damping"] = f"{where}, and what they lose is taken for it, which comes to {damping.value:.2g} {damping.unit}"
     if missed and (play := estimates.get("backlash")):
         most = max(most_play(r) for r in records)
         why["backlash"] = f"{where}, and the model misses them: at most {most:.3g} {play.unit}, the range of z"
-    return {
+    return wider | {
         name: replace(estimates[name], value=None, stderr=None, verdict=UNDETERMINED, why=said) for name, said in why.items()
     }
 

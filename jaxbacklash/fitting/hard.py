@@ -21,6 +21,8 @@ SUSPECT = 4.0
 """Samples in a contact, below which a misfit may come from a contact that is harder still."""
 HARDER = 0.5
 """Samples in a contact with which a search begins anew."""
+LAG = 4
+"""Samples over which the usual speed is taken: noise is little of the travel in them."""
 TAIL = 0.01
 """Share of the samples beyond either edge of the range that is the play: noise, and the ends of contacts."""
 
@@ -53,6 +55,13 @@ def most_play(record: Record) -> float:
     """What the play is at most, where contacts lie between the samples: the range of z, in its unit."""
     low, high = _range(_relative(record))
     return float(high - low)
+
+
+def travel_in_contact(system: System, record: Record) -> float:
+    """How far the link travels at its usual speed in the time of a contact, in the unit of z: by so much the play is open where
+    the stiffness is, since a softer contact and a smaller play turn the link round at the same moments."""
+    z = _relative(record)
+    return contact_samples(system, record.dt) * float(np.sqrt(np.mean((z[LAG:] - z[:-LAG]) ** 2))) / LAG
 
 
 def _relative(record: Record) -> np.ndarray:
