@@ -99,7 +99,10 @@ class Bench:
     def settle(self, kind: Kind, size: float, system: System | None) -> Point | None:
         """The model and the size of a cause searched for in turn: from where the fit has ended, or from a system far from it."""
         if system is None:
-            problem, layout = self._with(self.problem, kind, self.corrected(kind, size))
+            try:
+                problem, layout = self._with(self.problem, kind, self.corrected(kind, size))
+            except BadInput:  # so corrected it is no record any more
+                return None
             point = self._go_on(size, problem, self.unknowns, layout)
         else:
             found = self._anew(kind, size, system)
@@ -107,11 +110,14 @@ class Bench:
                 return None
             point = found
         for _ in range(ROUNDS if kind.step(self.fit.records[0]) > 0.0 else 0):
-            _, moved, error = self.parabola(kind, point.size, point.problem, point.unknowns)
-            if not np.isfinite(error):
+            try:
+                _, moved, error = self.parabola(kind, point.size, point.problem, point.unknowns)
+                if not np.isfinite(error):
+                    break
+                problem, layout = self._with(point.problem, kind, self.corrected(kind, moved))
+            except BadInput:
                 break
             arrived = abs(moved - point.size) < SETTLED * error
-            problem, layout = self._with(point.problem, kind, self.corrected(kind, moved))
             after = self._go_on(moved, problem, point.unknowns, layout, error)
             if not after.cost < 1.02 * point.cost:
                 break

@@ -142,7 +142,11 @@ class Inertia(Scale):
     name, spare = "inertia", 0.1
 
     def coarse(self, record: Record) -> np.ndarray:
-        return np.array([estimate(record, inertia=None).inertia / self.given])
+        with np.errstate(all="ignore"):
+            try:
+                return np.array([estimate(record, inertia=None).inertia / self.given])
+            except (np.linalg.LinAlgError, ValueError):  # nothing in it depends on the inertia
+                return np.array([])
 
     def corrected(self, record: Record, size: float) -> Corrected:
         return Corrected(record.replace(F=record.channels["F"] / size), np.ones(record.samples))

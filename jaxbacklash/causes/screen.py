@@ -32,5 +32,5 @@ def misfit(record: Record, inertia: float | None, play: bool, spring: bool, effe
     try:
         with np.errstate(all="ignore"):
             return estimate(record, inertia=inertia, play=play, spring=spring, effects=effects, plays=PLAYS)
-    except (BadInput, NoAnswer, np.linalg.LinAlgError):
+    except (BadInput, NoAnswer, np.linalg.LinAlgError, ValueError):
         return None
