@@ -1,7 +1,7 @@
 """What a command made of an odd file: read right, refused rightly, said beside the answer, or wrong.
 
 The quick way stops after reading and compares the columns with what was written; the full way fits and compares the intervals,
-widened from 95 % to 3.5 standard errors, so that chance alone makes no row. Text to paste is followed, up to three times.
+widened from 95 % to 4.5 standard errors, so that chance alone makes no row. Text to paste is followed, up to three times.
 """
 
 from __future__ import annotations
@@ -23,7 +23,8 @@ WRONG, UNREAD, MESSAGE, PASTE, CRASHED, OPEN = "WRONG", "UNREAD", "MESSAGE", "PA
 """A wrong answer without a word; refused though it can be read; a refusal that lacks what it must name; text to paste that does
 not work; a traceback; and, after reading alone, nothing said yet of what only a fit can see."""
 FAILURES = (WRONG, UNREAD, MESSAGE, PASTE, CRASHED)
-WIDER = 3.5 / 1.96
+WIDER = 4.5 / 1.96
+"""Of some 200 independent numbers one is beyond 4.5 standard errors in every tenth run, and beyond 4.5 in one of 700."""
 HOPS = 3
 KNOWN = {"HZ": "500"}
 
