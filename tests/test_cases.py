@@ -26,7 +26,7 @@ class Right:
 
 
 CASES = {
-    "wrap_pi.csv": Right(REFUSED, (r"\bx\b", r"(row|line) (45[67]|458)", r"--unwrap", r"2 ?pi|turn|6\.28"), "--unwrap"),
+    "wrap_pi.csv": Right(REFUSED, (r"\bx\b", r"(rows?|lines?) .*\b45[5-8]\b", r"--unwrap", r"2 ?pi|turn|6\.28"), "--unwrap"),
     "smalldeg_hdr.csv": Right(beside=r"deg"),
     "thousands.txt": Right(REFUSED, (r"\d,\d{3}", r"line|row", r"thousand|two ways|decimal"), r"decimal[ =]+'?\."),
     "zoh100.csv": Right(SAID, (r"\bz\b", r"held|hold|refresh|stay|repeat|every")),
@@ -49,11 +49,10 @@ CASES = {
     "accel3.csv": Right(REFUSED, (r"accel|--columns|both|three|which",)),
     "utf16_nobom.txt": Right(),
     "zero_sentinel.csv": Right(SAID, (r"\b[xz]\b", r"row|line", r"\b0\b|sentinel|despike|stand|outl")),
-    "m.xlsx": Right(),
-    "d.json": Right(),
+    "m.xlsx": Right(SAID, (r"Time \[s\]", r"--columns")),  # its names are no channels: one command more
+    "d.json": Right(SAID, (r"data", r"--columns")),  # a matrix without names
     "ref.csv.gz": Right(),
 }
-TRUTH = {"backlash": 0.021375, "stiffness": 16008.0, "damping": 24.8, "gravity.G": -27.99}
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -62,8 +61,6 @@ def test_a_file_as_people_bring_it(shared, name):
     case = next(each for each in json.loads((folder / "cases.json").read_text()) if each["file"] == name)
     right = CASES[name]
     truth = {{"gravity": "gravity.G"}.get(key, key): value for key, value in (case["truth"] or {}).items()}
-    if name == "structtime.mat":  # the record of the others, so that what its message offers must lead to their answer
-        truth = TRUTH
     words = ["fit", name, *shlex.split(case["arguments"])]
     draft = Draft([], None, right=right.way, words=[right.words] if right.words else [], remedy=right.remedy, truth=truth)
     verdict = judged(draft, folder, words, full=True)

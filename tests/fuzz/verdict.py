@@ -121,6 +121,6 @@ def _files(case: Case, run: Run, before: Snapshot, after: Snapshot) -> list[str]
         if name.endswith((".part", ".tmp")) or (mark == empty and ".tiles/" not in name):
             complaints.append(f"{name} is half written")
     results = {name for name in new if Path(name).name in RESULTS}
-    if run.code != 0 and results and run.after_signal is None and not case.stdout:
+    if run.code != 0 and results and run.after_signal is None and not (case.stdout or case.silent):
         complaints.append(f"results beside a failure: {', '.join(sorted(results))}")
     return complaints
