@@ -60,7 +60,9 @@ def text(found: Description) -> str:
         "transmitted": "base motion with the transmitted force", "series": "a series of one channel",
     }.get(found.kind or "", "no record that can be fitted as it stands")  # fmt: skip
     ready = found.record is not None or found.kind == "series"
-    lines += ["", f"it seems to be {kind}", f"{'next' if ready else 'once that is settled'}: {found.command}" if found.command else ""]
+    lines += ["", f"it seems to be {kind}"]
+    if found.command:
+        lines.append(f"{'next' if ready else 'once that is settled'}: {found.command}")
     return "\n".join(lines).rstrip()
 
 
