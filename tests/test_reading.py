@@ -89,6 +89,13 @@ def test_an_unknown_unit_of_the_file_is_not_passed_over():
     assert read(source, scales={"z": 1.0})[0].samples == N
 
 
+def test_time_by_its_own_word_is_taken_and_said():
+    found, said = read(table(Column("Time [ms]", 1e3 * T, "ms"), Column("x", X), Column("z", Z)))
+    np.testing.assert_allclose(found.t, T, atol=1e-12)
+    assert any("taken as t" in sentence for sentence in said)
+    assert "wanted a time column t" in str(refusal(named(time=T, Time=T, x=X, z=Z)))
+
+
 def test_a_name_that_stands_twice_is_told_and_its_clock_compared():
     source = table(Column("Time", T), Column("p", X), Column("Time", T.copy()), Column("b", Z))
     found, said = read(source, columns={"t": "Time", "x": "p", "z": "b"})

@@ -1,7 +1,7 @@
 """From the columns of a file to the channels of a record.
 
-A column becomes a channel where it has the channel's name ("x", or "x [deg]" with its unit), or where `--columns` says so.
-Nothing else is guessed at: what `roles` proposes stands in the refusal, ready to paste.
+A column becomes a channel where it has the channel's name ("x", or "x [deg]" with its unit; "time" for t), or where `--columns` says
+so. Nothing else is guessed at: what `roles` proposes stands in the refusal, ready to paste.
 """
 
 from __future__ import annotations
@@ -52,12 +52,9 @@ def pick(table: Table, mapping: Mapping[str, str], where: str, *, timed: bool = 
     numbers = {channel: column_number(table, spec, where) for channel, spec in mapping.items()}
     _apart(table, mapping, numbers, where)
     for channel in ("t", *CHANNELS):
-        if channel not in numbers:
-            found = next((n for n, name in enumerate(table.names) if name == channel and n not in numbers.values()), None)
-            if found is None:
-                found = _with_unit(table, channel, numbers)
-            if found is not None:
-                numbers[channel] = found
+        found = own_number(table, channel, numbers)
+        if channel not in numbers and found is not None:
+            numbers[channel] = found
     _complete(table, numbers, where, timed)
     channels = {channel: table.columns[number] for channel, number in numbers.items()}
     extras = {
@@ -65,7 +62,7 @@ def pick(table: Table, mapping: Mapping[str, str], where: str, *, timed: bool = 
         for number, column in reversed(list(enumerate(table.columns)))
         if number not in numbers.values() and not _empty(column)
     }
-    return Picked(channels, numbers, dict(reversed(extras.items())), _notes(table, numbers))
+    return Picked(channels, numbers, dict(reversed(extras.items())), _notes(table, mapping, numbers))
 
 
 def column_number(table: Table, spec: str, where: str) -> int:
@@ -89,7 +86,10 @@ def column_number(table: Table, spec: str, where: str) -> int:
     if len(ends) == 1:
         return ends[0]
     if spec in table.left_out:
-        raise wrong(f"{where}, column {spec}", table.left_out[spec], "one number for each sample")
+        option = columns_option(table, guess_roles(table))
+        way_out = f", as with {option}" if option else ""
+        sentence = f"{where}, column {spec}: found {table.left_out[spec]}, wanted one number for each sample{way_out}."
+        raise BadInput(sentence, remedy=option)
     near = _near(spec, names)
     hint = f" (did you mean {spec_of(table, names.index(near))}?)" if near else ""
     numbered = ", ".join(f"#{number} {name}" for number, name in enumerate(names[:12], 1))
@@ -118,9 +118,15 @@ def _empty(column: Column) -> bool:
     return column.values.dtype.kind == "f" and bool(np.isnan(column.values).all())
 
 
-def _with_unit(table: Table, channel: str, taken: Mapping[str, int]) -> int | None:
-    """The one column whose name is that of the channel with a unit beside it."""
-    like = [n for n, name in enumerate(table.names) if n not in taken.values() and split_unit(name)[0] == channel]
+def own_number(table: Table, channel: str, taken: Mapping[str, int]) -> int | None:
+    """The column of a channel's name; else the one with that name and a unit beside it, or, for t, the word "time"."""
+    plain = next((n for n, name in enumerate(table.names) if name == channel and n not in taken.values()), None)
+    if plain is not None:
+        return plain
+    open_ = {n: split_unit(name)[0] for n, name in enumerate(table.names) if n not in taken.values()}
+    like = [n for n, bare in open_.items() if bare == channel]
+    if channel == "t" and not like:
+        like = [n for n, bare in open_.items() if bare.lower() == "time"]
     return like[0] if len(like) == 1 else None
 
 
@@ -152,11 +158,13 @@ def _told(option: str) -> str:
     return "" if "HZ" in option else option
 
 
-def _notes(table: Table, numbers: Mapping[str, int]) -> tuple[str, ...]:
-    """What is said of a name that stands twice."""
+def _notes(table: Table, mapping: Mapping[str, str], numbers: Mapping[str, int]) -> tuple[str, ...]:
+    """What is said of times by another name, and of a name that stands twice."""
     notes = []
     for channel, number in numbers.items():
         name = table.columns[number].name
+        if channel == "t" and channel not in mapping and split_unit(name)[0] != "t":
+            notes.append(f'"{name}" is taken as t')
         others = [n for n, other in enumerate(table.names) if other == name and n != number]
         if others:
             rest = " and ".join(f"#{n + 1}" for n in others)

@@ -13,11 +13,10 @@ import numpy as np
 from . import checks, time_axis
 from .checks import listed, number, wrong
 from .clocks import times_of
-from .columns import Picked, column_number
+from .columns import Picked, column_number, own_number
 from .conversion import numbers_of, stated_units
 from .files import read_table
 from .findings.mend import before
-from .header_units import split_unit
 from .options import ReadOptions
 from .resample import resampled
 from .roles import guess_roles
@@ -101,9 +100,9 @@ def series_of(table: Table, channel: str | None, options: ReadOptions, where: st
         raise wrong("--rate", str(options.rate), "a positive number of samples per second")
     known = {name: column_number(table, spec, where) for name, spec in options.columns.items()}
     for name in ("t", *checks.CHANNELS):
-        like = [n for n, column in enumerate(table.names) if name in (column, split_unit(column)[0]) and n not in known.values()]
-        if name not in known and like:
-            known[name] = like[0]
+        own = own_number(table, name, known)
+        if name not in known and own is not None:
+            known[name] = own
     name, index = _wanted(table, channel, known, where)
     if index == known.get("t"):
         times = f"the times, {table.columns[index].name}, as the channel to judge"

@@ -136,5 +136,7 @@ def columns_option(table: Table, roles: dict[str, int]) -> str:
     '--columns \\'t="Time, s"\\''
     """
     told = {channel: spec_of(table, number) for channel, number in roles.items()}
-    needed = [f"{channel}={spec}" for channel, spec in told.items() if spec != channel]
+    bare = [split_unit(name)[0] for name in table.names]
+    own = {channel for channel, number in roles.items() if bare[number] == channel and bare.count(channel) == 1}
+    needed = [f"{channel}={spec}" for channel, spec in told.items() if channel not in own]
     return f"--columns {shlex.quote(','.join(needed))}" if needed else ""
