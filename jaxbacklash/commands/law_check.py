@@ -21,7 +21,7 @@ from ..errors import BadInput
 from ..mechanics import AbstractEffect, Drive, Play, canonical_name
 from ..parameters import Spec, ravel, specs, unravel
 from ..system import System
-from .laws import line_in, named
+from .law_errors import line_in, named
 
 PORTS = ("joint", "ground")
 UNKNOWN = "numbers that are not known while the law is compiled"

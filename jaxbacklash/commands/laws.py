@@ -22,6 +22,7 @@ from typing import Any, NoReturn
 from ..errors import BadInput
 from ..mechanics import AbstractEffect, canonical_name, catalogue
 from ..stopping import end_now
+from .law_errors import line_in, named
 
 MODULE = "own_laws_file_"
 """Beginning of the names under which such files are modules: not like a package's, whose text is known by its version."""
@@ -112,22 +113,6 @@ def _aside(*words: object, **how: Any) -> None:
     """What ``print`` is within a file of laws: beside what a command tells on stdout, also from within a law later on."""
     told = sys.stdout if isinstance(sys.stdout, io.StringIO) else sys.stderr
     builtins.print(*words, **{"file": told, **how})
-
-
-def named(error: BaseException) -> str:
-    """An error in a few words: its kind and the first line of its text."""
-    text = next((line for line in str(error).splitlines() if line.strip()), "")
-    return f"{type(error).__name__}: {text[:160]}" if text else type(error).__name__
-
-
-def line_in(error: BaseException, path: Path) -> str:
-    """``, line N`` where the error passed through the file, the innermost such line; nothing where it did not."""
-    found, here = "", error.__traceback__
-    while here is not None:
-        if here.tb_frame.f_code.co_filename == str(path):
-            found = f", line {here.tb_lineno}"
-        here = here.tb_next
-    return found
 
 
 @contextlib.contextmanager

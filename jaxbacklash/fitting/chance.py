@@ -6,12 +6,12 @@ far end now and then, no more; a wrong one has many, or all of them are a little
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 if TYPE_CHECKING:
-    from .fit import Fit
     from .score import Score
 
 NOISE_KNOWN = 0.03
@@ -25,7 +25,16 @@ SHARE, FEW = 0.05, 3
 an edge, where a right model parts from the record too."""
 
 
-def beyond_chance(fit: Fit) -> bool:
+class Scored(Protocol):
+    """A fit, as far as its scores go."""
+
+    @property
+    def scores(self) -> Sequence[Score]: ...
+    @property
+    def system(self) -> Any: ...
+
+
+def beyond_chance(fit: Scored) -> bool:
     """Whether any record of a fit is missed by more than noise explains."""
     return any(misses(score, 2 if fit.system is None else len(fit.system.state_names)) for score in fit.scores)
 
