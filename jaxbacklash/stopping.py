@@ -7,6 +7,7 @@ arrives, and ends the process: files that are being written are removed, finishe
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import os
 import signal
@@ -40,11 +41,15 @@ def end_when_told() -> None:
     try:
         watcher.start()
     except RuntimeError:  # no more threads for this user
+        reads.close()
+        writes.close()
         return
     _pair = (reads, writes)
     for number in wanted:
         signal.signal(number, _taken)
     signal.set_wakeup_fd(writes.fileno(), warn_on_full_buffer=False)
+    # Registered before the libraries load, so that it runs after what they do at the end.
+    atexit.register(_no_longer, writes, watcher, wanted)
 
 
 def end_now(sentence: str, code: int) -> None:
@@ -63,9 +68,16 @@ def _taken(number: int, frame: object) -> None:
 
 
 def _wait(reads: socket.socket, codes: dict[int, int]) -> None:
-    while True:
-        told = reads.recv(1)
-        if not told:
-            return
-        if told[0] in codes:
-            end_now("stopped", codes[told[0]])
+    with reads:
+        while told := reads.recv(1):
+            if told[0] in codes:
+                end_now("stopped", codes[told[0]])
+
+
+def _no_longer(writes: socket.socket, watcher: threading.Thread, numbers: list[int]) -> None:
+    """At the end of the process: the thread ends and both sockets are closed; a signal ends what is left as the system does."""
+    for number in numbers:
+        signal.signal(number, signal.SIG_DFL)
+    signal.set_wakeup_fd(-1)
+    writes.close()  # the other end then reads its end
+    watcher.join(1.0)

@@ -54,6 +54,14 @@ def test_ctrl_c_ends_a_simulation(tmp_path):
     assert stopped(tmp_path, "simulate", 1.0, signal.SIGINT)[::2] == (130, "stopped\n")
 
 
+def test_a_command_that_ends_by_itself_leaves_nothing_open(tmp_path):
+    write_record_csv(tmp_path / "r.csv", seconds=4.0)
+    run = jaxbacklash("look", "r.csv", cwd=tmp_path, PYTHONWARNINGS="always::ResourceWarning")
+    _, err = run.communicate(timeout=60)
+    assert run.returncode == 0
+    assert b"unclosed" not in err
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("after", [0.5, 1.5, 4.0])
 @pytest.mark.parametrize("name", COMMANDS)
