@@ -36,6 +36,24 @@ def test_a_map_is_written_told_and_drawn(call, tmp_path):
     assert told["solver"] == "exact linear pieces"
 
 
+@pytest.mark.parametrize("name", ["mine.html", "mine.png"])
+def test_a_page_or_picture_of_the_users_own_is_not_overwritten(call, tmp_path, name):
+    (tmp_path / name).write_bytes(b"<html><title>My notes</title></html>")
+    code, _, err = call("map", *SMALL, "--out", "mine.nc")
+    assert code == 2
+    assert name in sentence(err)
+    assert (tmp_path / name).read_bytes() == b"<html><title>My notes</title></html>"
+    assert not (tmp_path / "mine.nc").exists()
+
+
+def test_a_map_is_made_again_in_place_of_its_own_files(call, tmp_path):
+    assert call("map", *SMALL, "--out", "m.nc")[0] == 0
+    (tmp_path / "m.nc").unlink()
+    assert call("map", *SMALL, "--out", "m.nc")[0] == 0
+    (tmp_path / "m.html").unlink()  # the picture by itself is known too
+    assert call("map", *SMALL, "--out", "m.nc")[0] == 0
+
+
 def test_a_map_over_drive_frequency(call):
     code, _, err = call("map", "--case", "2", "--omega", "0.2:0.3:5", "--periods", "30", "--skip", "5", "--out", "omega.nc")
     assert code == 0, err

@@ -21,6 +21,10 @@ ONE_FILE = ("simulate", "map", "export")
 """Commands whose ``--out`` is a file."""
 BESIDE = {"map": (".html", ".png")}
 """What a command writes beside that file, by suffix."""
+MADE_HERE = {".html": b"by jaxbacklash</title>", ".png": b"Software\0jaxbacklash"}
+"""What stands near the beginning of such files where this program made them, by suffix."""
+BEGINNING = 4096
+"""Bytes of a file in which that is looked for."""
 OUT = "out"
 
 
@@ -53,7 +57,32 @@ def check(command: str, given: Mapping[str, Any], options: Mapping[str, str]) ->
             raise BadInput(
                 f"--out {shlex.quote(str(out))}: would overwrite {target}, which this command reads; wanted another place"
             )
+    if command in BESIDE:
+        _only_its_own(Path(out))
     _writable(command, Path(out))
+
+
+def _only_its_own(out: Path) -> None:
+    """Refuse to replace a page or picture that this program did not make: only the file itself was named by the user."""
+    page, *others = (out.with_suffix(suffix) for suffix in BESIDE["map"])
+    if _foreign(page):
+        taken = page
+    elif not _file(page) and any(map(_foreign, others)):  # a picture beside a page of ours may be of an older version
+        taken = next(filter(_foreign, others))
+    else:
+        return
+    found = f"would also overwrite {shlex.quote(str(taken))}, which is no {taken.suffix[1:]} of jaxbacklash"
+    raise BadInput(f"--out {shlex.quote(str(out))}: {found}; move that file, or pass another name as --out")
+
+
+def _foreign(path: Path) -> bool:
+    if not _file(path):
+        return False
+    try:
+        with path.open("rb") as file:
+            return MADE_HERE[path.suffix] not in file.read(BEGINNING)
+    except OSError:
+        return True
 
 
 def state_of(path: Path) -> os.stat_result | None:

@@ -158,5 +158,5 @@ def to_png_data_uri(figure: Figure, dpi: float = 150.0) -> str:
     buffer = io.BytesIO()
     with styled():
         lay_out(figure)
-        figure.savefig(buffer, format="png", dpi=dpi, facecolor="white")
+        figure.savefig(buffer, format="png", dpi=dpi, facecolor="white", metadata={"Software": "jaxbacklash"})
     return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")
