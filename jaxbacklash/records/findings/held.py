@@ -8,7 +8,7 @@ import numpy as np
 
 from jaxbacklash.records.finding import ASK, WARN, Finding
 
-from .local import SURPRISE_OF_NOISE, listed_rows, quantum, runs, surprise
+from .local import SURPRISE_OF_NOISE, common_step, listed_rows, quantum, runs, surprise
 
 HELD_ROWS = 4
 """Equal rows from which on they count as filled with the last one, where they end in a jump."""
@@ -22,6 +22,9 @@ BY_CHANCE = 3.0
 """Times the repeats that counting brings by chance that there are at least."""
 FINE, BLOCK = 0.2, 32
 """Share of the noise below which a count is fine, and samples of a stretch in which the noise is looked at."""
+GROUPS, FEWEST, SOME = 64, 1000, 16
+"""Groups of steps between samples of like size at most, steps in a group at least, and those other than 0 that tell
+its count: a file with a fixed number of digits is written ten times more coarsely from one power of ten to the next."""
 MOST = 0.2
 """Share of the samples up to which they are called stale; beyond it the channel is coarse or at rest."""
 
@@ -87,15 +90,37 @@ def stale_rows(values: np.ndarray) -> np.ndarray:
     if still.size < FEW_STALE or still.size > MOST * values.size or refreshed_every(values) > 1:
         return none
     count = quantum(values)
+    coarsest, repeats = _by_size(values, steps)
+    count = max(count, coarsest)
     single = np.abs(np.abs(steps) - count) < 0.5 * count
+    repeats = max(repeats, np.count_nonzero(single) / 2)
     # Where noise is many counts even at the quietest, repeats are by chance half as many as steps of a single count to and fro.
-    if count < FINE * _quietest(values) and still.size >= FEW_STALE + BY_CHANCE * np.count_nonzero(single) / 2:
+    if count < FINE * _quietest(values) and still.size >= FEW_STALE + BY_CHANCE * repeats:
         # A limit that is met again and again is another finding, see `limits`.
         return still[(values[still] < values.max()) & (values[still] > values.min())]
     rows = _overtaken(values, steps == 0.0, count)
     # Samples that move by a single count amid fast motion are as rare as those that do not move at all, but for stale ones.
     expected = _overtaken(values, single, count).size / 2
     return rows if rows.size >= FEW_STALE + BY_CHANCE * expected else none
+
+
+def _by_size(values: np.ndarray, steps: np.ndarray) -> tuple[float, float]:
+    """The coarsest count of any group of samples of like size, and the repeats that counting brings by chance in all of them.
+
+    Zero where the steps are multiples of none: then too few of them are small for a repeat by chance.
+    """
+    size = np.maximum(np.abs(values[1:]), np.abs(values[:-1]))
+    groups = np.array_split(np.argsort(size), min(max(steps.size // FEWEST, 1), GROUPS))
+    coarsest, repeats = 0.0, 0.0
+    for group in groups:
+        found = np.abs(steps[group])
+        found = np.sort(found[found > 1e-12 * size[group[-1]]])
+        count = common_step(found)
+        if count is not None and found.size > SOME:
+            coarsest = max(coarsest, count)
+            # Steps of a single count to and fro are twice as many as those of none.
+            repeats += np.count_nonzero(found < 1.5 * count) / 2
+    return coarsest, repeats
 
 
 def _quietest(values: np.ndarray) -> float:

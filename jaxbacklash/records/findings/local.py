@@ -65,13 +65,21 @@ def quantum(values: np.ndarray) -> float:
     steps = np.sort(steps[steps > 1e-12 * max(abs(float(values.max())), abs(float(values.min())))])
     if not steps.size:
         return 0.0
+    count = common_step(steps)
+    return min(1e-3 * float(np.median(steps)), float(steps[0])) if count is None else count
+
+
+def common_step(steps: np.ndarray) -> float | None:
+    """The step of which the smaller ones of sorted ``steps`` (N,), all above 0, are multiples; None where there is none."""
+    if not steps.size:
+        return None
     # Several are tried, since a bridged sample or two are no multiples, and in fast motion single counts are rare.
     for rank in (0, 1, 2, 4, 8, 16, steps.size // 200):
         count = float(steps[min(rank, steps.size - 1)])
         small = steps[: np.searchsorted(steps, 200 * count)] / count
         if small.size >= min(16, steps.size) and np.mean(np.abs(small - np.round(small)) < 0.1) > 0.9:
             return count
-    return min(1e-3 * float(np.median(steps)), float(steps[0]))
+    return None
 
 
 def listed_rows(rows: np.ndarray | list[int], most: int = 6) -> str:

@@ -1,0 +1,34 @@
+"""Samples of a finely written record that repeat the one before by chance are no stale samples."""
+
+import numpy as np
+import pytest
+
+from jaxbacklash.records.findings.held import stale_rows
+
+
+def written(noise, digits, significant, seed):
+    """A million rows of smooth motion and noise with a fixed number of significant digits or of decimals."""
+    t = np.arange(1_000_000) / 50e3
+    z = 0.02 * np.sin(2 * np.pi * 3.0 * t) + 0.01 * np.sin(2 * np.pi * 7.3 * t + 1.0)
+    z += noise * np.random.default_rng(seed).normal(size=t.size)
+    decimals = digits - 1 - np.floor(np.log10(np.abs(z))) if significant else digits
+    return np.round(z * 10.0**decimals) / 10.0**decimals
+
+
+@pytest.mark.parametrize("significant", [True, False], ids=["digits", "decimals"])
+@pytest.mark.parametrize("digits", [7, 8, 9])
+@pytest.mark.parametrize("noise", [1e-7, 1e-6, 1e-5])
+def test_chance_repeats_are_not_stale(noise, digits, significant):
+    z = written(noise, digits, significant, seed=digits)
+    if digits == 7:
+        assert np.count_nonzero(np.diff(z) == 0.0) > 100  # else there is nothing to take for stale
+    assert stale_rows(z).size == 0
+    assert stale_rows(z * np.pi / 180.0).size == 0
+
+
+@pytest.mark.parametrize("significant", [True, False], ids=["digits", "decimals"])
+def test_more_repeats_than_chance_brings_are_stale(significant):
+    z = written(1e-6, 8, significant, seed=1)
+    rows = np.arange(50, z.size - 50, 500)
+    z[rows] = z[rows - 1]
+    assert np.isin(rows, stale_rows(z)).mean() > 0.95
