@@ -95,3 +95,27 @@ def test_the_joint_in_a_name_says_more_than_the_quantity_behind_it():
     values = [T, X + Z, np.gradient(X + Z, T), X]
     roles = guess_roles(Table(tuple(map(Column, names, values)), "mcap"))
     assert {role: names[number] for role, number in roles.items()} == {"t": names[0], "x": names[3], "y": names[1]}
+
+
+def test_a_command_names_its_columns_once(tmp_path):
+    path = tmp_path / "short.csv"
+    path.write_text("".join(f"{t:.3f} s,{z:.5f} deg\n" for t, z in zip(T[:40], np.degrees(Z))))
+    found = describe(path, ReadOptions())
+    assert found.kind == "series"
+    assert found.command.count("--columns") == 1
+
+
+def test_uneven_times_are_resampled_by_the_command(tmp_path):
+    uneven = T + 0.2 / RATE * np.sin(np.arange(N))
+    found = describe(written(tmp_path / "run.csv", ["t", "x", "z"], uneven, X, Z), ReadOptions())
+    assert found.record is not None
+    assert found.command.endswith("--resample")
+
+
+def test_counts_too_long_for_a_number_are_proposed_as_times(tmp_path):
+    path = tmp_path / "run.csv"
+    rows = [f"{1700000000123456789 + 2000000 * k},{x:.7f},{z:.7f}" for k, (x, z) in enumerate(zip(X, Z))]
+    path.write_text("\n".join(["moment,x,z", *rows]) + "\n")
+    found = describe(path, ReadOptions())
+    assert found.command.endswith("--columns t=moment")
+    np.testing.assert_allclose(found.record.t, T, atol=1e-9)

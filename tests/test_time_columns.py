@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from jaxbacklash.errors import BadInput
+from jaxbacklash.records.time_axis import uniform_grid
 from jaxbacklash.records.times import join_date_time, seconds
 
 ROWS = 600
@@ -215,3 +216,19 @@ def test_date_and_time_of_two_columns():
     times = np.array([each.strftime("%H:%M:%S.%f") for each in when])
     for dates in ([each.strftime("%d.%m.%Y") for each in when], [float(each.strftime("%Y%m%d")) for each in when]):
         np.testing.assert_array_equal(read(join_date_time(np.array(dates), times))[0], T)
+
+
+@pytest.mark.parametrize("decimals", [9, 10])
+@pytest.mark.parametrize("rate", [100.0, 500.0, 1000.0])
+@pytest.mark.parametrize("start", [45000.4375, 36900.1, 51000.9])
+def test_days_of_spreadsheets_are_even_times(decimals, rate, start):
+    even = np.arange(3000) / rate
+    t, _ = read(np.round(start + even / 86400.0, decimals))
+    grid = uniform_grid(t)
+    assert grid is not None
+    np.testing.assert_allclose(grid - grid[0], even, atol=86400 * 10.0**-decimals)
+
+
+def test_a_lost_row_among_days_is_not_taken_for_rounding():
+    even = np.delete(np.arange(3000) / 500.0, 1500)
+    assert uniform_grid(read(np.round(45000.4375 + even / 86400.0, 10))[0]) is None

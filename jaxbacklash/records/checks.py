@@ -27,9 +27,9 @@ WANTED_CHANNELS = (
 )
 
 
-def wrong(place: str, found: str, wanted: str) -> BadInput:
+def wrong(place: str, found: str, wanted: str, remedy: str = "") -> BadInput:
     """The error that says, in one sentence on one line, where something is wrong, what was found and what is wanted."""
-    return BadInput(f"{place}: found {found}, wanted {wanted}.".replace("\n", " "))
+    return BadInput(f"{place}: found {found}, wanted {wanted}.".replace("\n", " "), remedy=remedy)
 
 
 def number(value: float) -> str:

@@ -203,7 +203,7 @@ def _command(words: list[str], table: Table, roles: dict[str, int], record: Reco
             return ""
         words = ["jaxbacklash", "chaos", *words[2:], "--channel", f"#{moving + 1}"]
         if "t" in roles and table.columns[roles["t"]].name != "t":
-            words += ["--columns", f"t=#{roles['t'] + 1}"]
+            words = with_remedy(words, f"--columns t=#{roles['t'] + 1}")  # in place of what was proposed for a record
         elif "t" not in roles and "--rate" not in words:
             words += ["--rate", f"{table.rate_hz:.9g}" if table.rate_hz else "HZ"]
         return shlex.join(words)

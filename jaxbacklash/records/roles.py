@@ -14,13 +14,16 @@ from .table import Column, Table
 from .units import spelt
 
 NAMES: dict[str, tuple[str, ...]] = {
-    "t": ("t", "time", "timestamp", "time stamp", "elapsed", "zeit", "temps", "tiempo", "seconds", "sec", "datetime", "clock"),
+    "t": (
+        "t", "time", "timestamp", "time stamp", "elapsed", "zeit", "temps", "tiempo", "seconds", "sec", "datetime", "clock",
+        "stamp",
+    ),
     "x": ("x", "base", "input", "motor", "drive", "shaker", "platform", "phi", "enc1", "encoder1", "ch1", "channel 1", "ai0"),
     "z": ("z", "relative", "rel", "difference", "diff", "play", "ch2", "channel 2", "enc2", "encoder2", "ai1"),
     "y": ("y", "link", "output", "load", "arm", "absolute", "abs", "theta", "position", "pos", "angle"),
     "F": ("F", "force", "torque", "load cell"),
     "T": ("T", "transmitted"),
-}
+}  # fmt: skip
 """Names by channel, the likelier first; compared in lower case without what is in brackets. "F" and "T" stand for themselves."""
 
 QUANTITIES = frozenset(("position", "pos", "angle", "data", "value", "values"))
@@ -60,9 +63,21 @@ def _likeness(channel: str, column: Column) -> int:
 
 
 def _is_time(column: Column) -> bool:
-    """Whether the values of a column of numbers only grow."""
+    """Whether the values of a column of numbers only grow; whole numbers too long for double precision are kept as text."""
     values = column.values
+    if values.dtype.kind == "U":
+        return _grows(values)
     return values.dtype.kind == "f" and values.size > 2 and bool(np.all(np.diff(values[np.isfinite(values)]) > 0))
+
+
+def _grows(values: np.ndarray) -> bool:
+    """Whether texts are whole numbers that only grow."""
+    if values.size < 3 or not values[0].strip().isdigit():
+        return False
+    try:
+        return bool(np.all(np.diff(values.astype(np.int64)) > 0))
+    except (ValueError, OverflowError):
+        return False
 
 
 def guess_roles(table: Table) -> dict[str, int]:

@@ -18,6 +18,9 @@ RELATIVE = 1e-6
 HARMLESS = 1e-3
 """Rounding finer than this fraction of a step is accepted without further evidence."""
 
+WITHIN = 0.58
+"""Units that rounded times lie from an even grid at most: half of one, and what a second rounding, to binary digits, adds."""
+
 GAP = 1.5
 """A step of this many usual steps is called a gap, where such steps are rare."""
 
@@ -58,7 +61,7 @@ def uniform_grid(t: np.ndarray) -> np.ndarray | None:
         return None
     steps = np.diff(t)
     for unit in _roundings(t, steps):
-        if worst > 0.55 * unit:
+        if worst > WITHIN * unit:
             continue
         usual = np.median(steps)
         odd = np.count_nonzero(np.abs(steps - usual) > unit / 4)
@@ -146,8 +149,8 @@ def uniform(t: np.ndarray, where: str) -> np.ndarray:
         row = wide[0]
         more = f" and {wide.size - 1} more like it" if wide.size > 1 else ""
         found = f"a gap of {number(steps[row])} s between rows {row + 1} and {row + 2} (at {t[row]:.9g} s){more}"
-        raise wrong(f"{where}, column t", found, f"even steps of {number(usual)} s; {way_out}")
+        raise wrong(f"{where}, column t", found, f"even steps of {number(usual)} s; {way_out}", "--resample")
     row = int(np.argmax(np.abs(steps - usual)))
     found = f"uneven times, such as a step of {steps[row]:.9g} s between rows {row + 1} and {row + 2}"
     wanted = f"even steps, of {usual:.9g} s here, to a millionth of a step; {way_out}"
-    raise wrong(f"{where}, column t", found, wanted)
+    raise wrong(f"{where}, column t", found, wanted, "--resample")

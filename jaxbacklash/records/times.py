@@ -51,6 +51,9 @@ LONGEST_STEP_S = 10.0
 SHORTEST_DAYS = 1e-4
 """Days whose usual step is larger (9 s) are no days: a record in seconds may begin at 40000 s."""
 
+MOST_DECIMALS_OF_A_DAY = 12
+"""Decimals of a day (0.1 us) that are looked for: double precision keeps 11 of a spreadsheet's days."""
+
 FINEST_FRACTION = 1e-6
 """A step finer than this, between times within one day, is of fractions of a day: in seconds it would be over 1 MHz."""
 
@@ -145,6 +148,8 @@ def _counted(values: np.ndarray, count: Count, name: str) -> tuple[np.ndarray, s
     since = values - first
     if not exact and count.per_second == 1.0:
         since = _decimal(values, float(first))
+    elif not exact and count.per_second < 1.0:
+        since = _decimal_days(values, float(first))
     t = since / count.per_second
     sentence = f'the times of "{name}" are read as {count.called}'
     if count.origin:
@@ -169,6 +174,20 @@ def _decimal(values: np.ndarray, first: float) -> np.ndarray:
         if np.all(np.abs(rounded - values)[known] <= np.spacing(np.abs(first))):
             whole, scale = np.floor(first), 10**digits
             return (np.rint((values - whole) * scale) - np.rint((first - whole) * scale)) / scale
+    return values - first
+
+
+def _decimal_days(values: np.ndarray, first: float) -> np.ndarray:
+    """The same for days, of which a step is so small a part that their binary rounding makes even times look uneven."""
+    whole = np.floor(first)
+    known = np.isfinite(values)
+    for digits in range(4, MOST_DECIMALS_OF_A_DAY + 1):
+        scale = 10.0**digits
+        if 1.0 / scale <= np.spacing(first):
+            break
+        counts = np.rint((values - whole) * scale)
+        if np.array_equal((whole + counts / scale)[known], values[known]):
+            return (counts - np.rint((first - whole) * scale)) / scale
     return values - first
 
 
