@@ -9,7 +9,7 @@ from scipy import stats
 
 import jaxbacklash as jb
 from jaxbacklash.commands import diagnose as command
-from jaxbacklash.commands.common import Reading
+from jaxbacklash.commands.reading import Reading
 from jaxbacklash.criticism.failures import depends, ranks_of
 from jaxbacklash.model_file import load_model
 

@@ -1,7 +1,7 @@
 """From the columns of a file to the channels of a record.
 
-A column becomes a channel where it has the channel's name ("x", or "x [deg]" with its unit; "time" for t), or where `--columns` says
-so. Nothing else is guessed at: what `roles` proposes stands in the refusal, ready to paste.
+A column becomes a channel where it has the channel's name ("x", or "x [deg]" with its unit; "time" for t), or where `--columns`
+says so. Nothing else is guessed at: what `roles` proposes stands in the refusal, ready to paste.
 """
 
 from __future__ import annotations
