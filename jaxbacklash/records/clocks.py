@@ -110,7 +110,8 @@ def on_one_clock(
         step = float(np.median(np.diff(t)))
         if times.size == t.size and np.nanmax(np.abs(times - t)) <= time_axis.HARMLESS * step:
             shared[name] = values
-            notes.append(f"{name} has times of its own ({source}), the same as those of t")
+            if picked.channels[name].clock is None:  # a second column of times; formats with groups keep a clock for each channel
+                notes.append(f"{name} has times of its own ({source}), the same as those of t")
             continue
         shared[name] = _moved(times, values, t, name, source, options, where)
         notes.append(f"{name} is brought from its own times ({source}) to those of t, which differ {_difference(times, t)}")
