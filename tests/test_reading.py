@@ -234,3 +234,39 @@ def test_times_in_no_order_get_no_rate_to_paste(times, found):
     told = refusal(named(t=times, x=X, z=Z))
     assert found in str(told)
     assert not told.remedy
+
+
+def test_channels_of_one_group_have_one_clock_and_nothing_is_said():
+    source = table(Column("x", X, clock=T), Column("z", Z, clock=T.copy()))
+    found, said = read(source)
+    assert found.samples == N
+    assert not any("times of its own" in sentence for sentence in said)
+
+
+def test_rows_in_messages_are_rows_of_the_file():
+    spiked = Z.copy()
+    spiked[1000] += 0.3
+    _, said = read(table(Column("t", T), Column("x", X), Column("z", spiked)), start=T[400])
+    (sentence,) = (each for each in said if "stands out" in each)
+    assert "row 601 " in sentence
+    assert "row 401 of the file" in sentence
+    holed = Z.copy()
+    holed[1000] = np.nan
+    source = table(Column("t", T), Column("x", X), Column("z", holed), first_line=2)
+    assert "row 1001 (line 1002)" in str(refusal(source, start=T[400]))
+    _, said = read(source, start=T[400], resample=True)
+    assert any("bridged, at row 1001 (line 1002)" in sentence for sentence in said)
+    gap = np.r_[0:1000, 1003:N]
+    refused = refusal(named(t=T[gap], x=X[gap], z=Z[gap]), start=T[400])
+    assert "between rows 600 and 601 " in str(refused)
+    assert "row 401 of the file" in str(refused)
+    assert refused.remedy == "--resample"
+
+
+def test_rows_left_out_because_a_channel_is_held_are_said():
+    held = np.repeat(Z[2::5], 5)[: N - 3]
+    z = np.concatenate([Z[:3], held])[:N]
+    found, said = read(named(t=T, x=X, z=z), despike={"z"})
+    assert found.samples == pytest.approx(N / 5, abs=1)
+    (sentence,) = (each for each in said if "every 5 rows" in each)
+    assert f"only those {found.samples} rows are used, at 100 Hz" in sentence

@@ -7,21 +7,21 @@ import warnings
 import numpy as np
 
 from .checks import wrong
-from .table import Table
+from .rows_used import RowsUsed
 
 LONGEST = 5
 """Missing samples in a row that are bridged: what a spline through the neighbours still follows at ten samples a swing."""
 
 
-def bridged(t: np.ndarray, channels: dict[str, np.ndarray], table: Table, where: str) -> dict[str, np.ndarray]:
+def bridged(t: np.ndarray, channels: dict[str, np.ndarray], rows: RowsUsed, where: str) -> dict[str, np.ndarray]:
     """The channels with runs of at most `LONGEST` NaN filled along a cubic spline through their neighbours; warns of the rows.
 
     Parameters
     ----------
     t : array of shape (N,), s
     channels : dict of arrays of shape (N,)
-    table : Table
-        Tells the lines of the file.
+    rows : RowsUsed
+        Tells the rows and lines of the file.
     where : str
         The file, for the sentences.
 
@@ -41,14 +41,14 @@ def bridged(t: np.ndarray, channels: dict[str, np.ndarray], table: Table, where:
         if long.size:
             run = long[0]
             count = int(last[run] - first[run] + 1)
-            found = f"{count} missing values in a row from {table.place(int(first[run]))} on"
+            found = f"{count} missing values in a row from {rows.place(int(first[run]))} on"
             raise wrong(f"{where}, column {name}", found, f"at most {LONGEST} in a row, even with --resample")
         from scipy.interpolate import CubicSpline  # a sixth of a second to import, and few records need it
 
         filled = values.copy()
         filled[missing] = CubicSpline(t[~missing], values[~missing])(t[missing])
         whole[name] = filled
-        places = ", ".join(table.place(int(row)) for row in first[:3])
+        places = ", ".join(rows.place(int(row)) for row in first[:3])
         more = f" and {first.size - 3} more" if first.size > 3 else ""
         count = int(missing.sum())
         warnings.warn(f"{where}, column {name}: {count} missing values are bridged, at {places}{more}.", stacklevel=3)

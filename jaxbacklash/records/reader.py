@@ -18,17 +18,19 @@ from jaxbacklash.errors import BadInput
 
 from . import checks, time_axis
 from .bridge import bridged
-from .checks import wrong
+from .checks import number, wrong
 from .clocks import on_one_clock, times_of
 from .columns import Picked, pick
 from .conversion import in_si
 from .files import read_table
 from .finding import ASK, REFUSE, Finding
 from .findings import find, find_in_times
+from .findings.held import refreshed_every
 from .findings.mend import after, before
 from .options import ReadOptions
 from .record import Record
 from .resample import no_long_gap, resampled
+from .rows_used import RowsUsed
 from .table import Table
 from .undriven import undriven
 
@@ -116,19 +118,25 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
     for note in (*table.notes, *picked.notes, *notes, *told, *compared):
         warnings.warn(f"{where}: {note}", UserWarning, stacklevel=3)
     extras = {name: values for name, values in picked.extras.items() if values.shape == t.shape}
+    used = RowsUsed(table)
     if compared:
-        t, channels, extras = _covered(t, channels, extras)
-    t, channels, extras = _between(t, channels, extras, options, where)
+        t, channels, extras, used = _only(_covered(t, channels), t, channels, extras, used)
+    t, channels, extras, used = _only(_between(t, options, where), t, channels, extras, used)
     if options.resample:
-        channels = bridged(t, channels, table, where)
+        channels = bridged(t, channels, used, where)
     for name, values in {"t": t, **channels}.items():
-        checks.finite(values, name, where, table.place)
+        checks.finite(values, name, where, used.place)
     stated = frozenset(options.units) | {name for name, column in picked.channels.items() if column.unit}
-    findings = find_in_times(t, options, units_stated=stated)
+    findings = used.said(find_in_times(t, options, units_stated=stated))
     _refuse(findings, where)
-    _without_gaps(t, options, where)
+    try:
+        _without_gaps(t, options, where)
+    except BadInput as why:
+        raise BadInput(used.told(str(why)), remedy=why.remedy) from None
+    whole, held = t, channels
     t, channels, extras = before(t, channels, extras, options)
-    findings += find(t, channels, extras, options, units_stated=stated, rate_hz=options.rate)
+    used = _thinned(whole, held, t, options, used, where)
+    findings += used.said(find(t, channels, extras, options, units_stated=stated, rate_hz=options.rate))
     _refuse(findings, where)
     for finding in findings:
         warnings.warn(finding.sentence(where), UserWarning, stacklevel=3)
@@ -171,20 +179,37 @@ def _whole(t: np.ndarray, channels: dict[str, np.ndarray], table: Table, where: 
             checks.same_length(values, name, t, where)
 
 
-def _covered(t, channels, extras):
-    """Only the rows from the first to the last for which every channel has a value: clocks need not begin or end together."""
+def _only(rows: slice, t, channels, extras, used: RowsUsed):
+    """The columns at some rows that follow each other, and which rows of the file these are."""
+    first = rows.start or 0
+    return t[rows], {n: v[rows] for n, v in channels.items()}, {n: v[rows] for n, v in extras.items()}, used.further(first)
+
+
+def _covered(t: np.ndarray, channels: Mapping[str, np.ndarray]) -> slice:
+    """The rows from the first to the last for which every channel has a value: clocks need not begin or end together."""
     known = np.all([np.isfinite(values) for values in channels.values()], axis=0)
     if known.size != t.size or not known.any():
-        return t, channels, extras
-    first, last = int(np.argmax(known)), t.size - int(np.argmax(known[::-1]))
-    rows = slice(first, last)
-    return t[rows], {n: v[rows] for n, v in channels.items()}, {n: v[rows] for n, v in extras.items()}
+        return slice(None)
+    return slice(int(np.argmax(known)), t.size - int(np.argmax(known[::-1])))
 
 
-def _between(t, channels, extras, options: ReadOptions, where: str):
-    """Only the rows from `start` to `stop`."""
+def _thinned(whole: np.ndarray, channels, t: np.ndarray, options: ReadOptions, used: RowsUsed, where: str) -> RowsUsed:
+    """Which rows are left of those at the times ``whole``, with a warning where `--despike` left out all that hold a value."""
+    if t.size == whole.size:
+        return used
+    first, second = np.searchsorted(whole, t[:2])
+    every = int(second - first)
+    name = next(name for name in sorted(options.despike & set(channels)) if refreshed_every(channels[name]) > 1)
+    rate = number((t.size - 1) / (t[-1] - t[0]))
+    what = f"has a new value every {every} rows: only those {t.size} rows are used, at {rate} Hz"
+    warnings.warn(f"{where}, column {name}: {what}.", UserWarning, stacklevel=4)
+    return used.further(int(first), every)
+
+
+def _between(t: np.ndarray, options: ReadOptions, where: str) -> slice:
+    """The rows from `start` to `stop`."""
     if options.start is None and options.stop is None:
-        return t, channels, extras
+        return slice(None)
     low = -math.inf if options.start is None else options.start
     high = math.inf if options.stop is None else options.stop
     first = int(np.argmax(t >= low)) if np.any(t >= low) else t.size
@@ -194,7 +219,7 @@ def _between(t, channels, extras, options: ReadOptions, where: str):
     if not t[rows].size:
         found = f"no samples from {low:g} s to {high:g} s"
         raise wrong(where, found, f"a part of {t[0]:.6g} s to {t[-1]:.6g} s for --from and --to")
-    return t[rows], {n: v[rows] for n, v in channels.items()}, {n: v[rows] for n, v in extras.items()}
+    return rows
 
 
 def _refuse(findings: list[Finding], where: str) -> None:
