@@ -23,6 +23,10 @@ MAX_BYTES = 2 << 30
 """The most that the columns of one file may take in memory [bytes]: 268 million numbers. A file of a few kilobytes can claim
 terabytes, so this is asked before anything is allocated."""
 
+ROOM = 1 << 30
+"""Bytes for texts whose length only the compiled part of a library sees. Other threads load compiled programs meanwhile, and must
+not run short of address space."""
+
 
 def library(module: str, package: str, path: Path, kind: str, instead: str = "") -> ModuleType:
     """Import what reads a format.
@@ -104,6 +108,30 @@ def quiet() -> Iterator[None]:
     finally:
         logging.disable(before)
         sys.unraisablehook = hook
+
+
+@contextlib.contextmanager
+def room(size: int = ROOM) -> Iterator[None]:
+    """Within it the process may take ``size`` bytes of address space more, for compiled parts that allocate what a file claims.
+
+    They then report that there is no memory, at once, instead of taking it. Where the system keeps no such limit nothing changes.
+    """
+    try:
+        import resource
+
+        before = resource.getrlimit(resource.RLIMIT_AS)
+        with open("/proc/self/statm", encoding="ascii") as file:
+            most = int(file.read().split()[0]) * resource.getpagesize() + size
+        if before[0] != resource.RLIM_INFINITY:
+            most = min(most, before[0])
+        resource.setrlimit(resource.RLIMIT_AS, (most, before[1]))
+    except (ImportError, OSError, ValueError):
+        yield
+        return
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_AS, before)
 
 
 class Budget:

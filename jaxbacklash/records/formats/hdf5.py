@@ -12,7 +12,7 @@ import numpy as np
 from ..checks import MIN_SAMPLES
 from ..table import Table
 from .arrays import MAX_CHANNELS, Columns, named_matrix, tidy
-from .guard import Budget, guarded, library
+from .guard import Budget, guarded, library, room
 
 MAX_DEPTH = 32
 MAX_ATTRIBUTE_BYTES = 1 << 20
@@ -110,7 +110,12 @@ def attribute(item: Any, name: str) -> Any:
     if name not in item.attrs:
         return None
     found = item.attrs.get_id(name)
-    return item.attrs[name] if found.dtype.itemsize * math.prod(found.shape) <= MAX_ATTRIBUTE_BYTES else None
+    if found.dtype.itemsize * math.prod(found.shape) > MAX_ATTRIBUTE_BYTES:
+        return None
+    if found.dtype.kind != "O":
+        return item.attrs[name]
+    with room():  # the length of a text stands in the file beside its place, and HDF5 believes it
+        return item.attrs[name]
 
 
 def elsewhere(item: Any) -> bool:
@@ -120,7 +125,8 @@ def elsewhere(item: Any) -> bool:
 
 def _values(item: Any, h5py: Any) -> np.ndarray:
     if h5py.check_string_dtype(item.dtype) is not None:
-        return np.asarray(item.asstr(errors="replace")[()]).astype(str)
+        with room():
+            return np.asarray(item.asstr(errors="replace")[()]).astype(str)
     return np.asarray(item[()])
 
 

@@ -49,7 +49,7 @@ def _item(item: Any, h5py: Any, depth: int, budget: Budget) -> Any:
         return Unread("a kind of data that has no values")
     if elsewhere(item):
         return Unread("a view of another file, which is not read")
-    if item.attrs.get("MATLAB_empty", 0):
+    if attribute(item, "MATLAB_empty"):
         return np.empty(0)
     if item.dtype.kind == "O" and h5py.check_ref_dtype(item.dtype) is h5py.Reference:
         return _cells(item, h5py, depth, budget)
