@@ -313,8 +313,13 @@ def period_three(samples: int, realisations: int, seed: int = 0) -> np.ndarray:
 
 
 def noisy_duffing_cycle(samples: int, realisations: int, seed: int = 0) -> np.ndarray:
-    """The forced Duffing oscillator in a periodic regime, with 2 % noise."""
-    quiet = Chaotic("Duffing, periodic", _duffing, (0.5, 0.1), dt=TWO_PI / 40, period=TWO_PI, constants={"f": 0.2})
+    """The forced Duffing oscillator in a periodic regime, with 2 % noise.
+
+    It may jump between its wells for hundreds of samples before it settles in one, so the transient left out is long.
+    """
+    quiet = Chaotic(
+        "Duffing, periodic", _duffing, (0.5, 0.1), dt=TWO_PI / 40, period=TWO_PI, constants={"f": 0.2}, transient=8000
+    )
     return with_noise(quiet.series(samples, realisations, seed), 0.02, seed)
 
 
