@@ -9,7 +9,7 @@ from jaxbacklash import BadInput, chaos
 from jaxbacklash.timeseries import find_drift
 from jaxbacklash.timeseries.analyse import LONGEST, _shortened
 
-from .independent.chaotic import HENON, LORENZ, ar2, torus, with_noise
+from .independent.chaotic import HELD_BACK, HENON, KNOWN, LORENZ, NOT_CHAOTIC_HELD_BACK, ar2, torus, with_noise
 
 
 def rng(seed=0):
@@ -38,6 +38,20 @@ def test_nearly_all_random_walks_are_seen(samples):
 def test_steady_motions_do_not_drift():
     made = [*HENON.series(2000, 4, 3), *LORENZ.series(4000, 6, 3), *torus(3000, 6, 3), *ar2(3000, 6, 3)]
     assert sum(find_drift(one).kind != "none" for one in made) <= 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("samples", [1500, 3000])
+def test_no_steady_motion_of_thirty_swings_is_forbidden_a_verdict(samples):
+    made = [one for system in (*KNOWN, *HELD_BACK) for one in with_noise(system.series(samples, 6, 11), 0.02, 11)]
+    quiet = (make for name, make in NOT_CHAOTIC_HELD_BACK.items() if name != "1/f noise")
+    made += [one for make in quiet for one in make(samples, 6, 11)]
+    assert sum(find_drift(one).forbids for one in made) <= 2
+
+
+def test_a_forced_pendulum_does_not_wander():
+    (pendulum,) = (system for system in HELD_BACK if system.name == "forced pendulum")
+    assert not any(find_drift(one).forbids for one in pendulum.series(1500, 12, 9))
 
 
 @pytest.mark.parametrize("degree", [1, 2])
