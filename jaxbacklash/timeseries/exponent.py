@@ -43,6 +43,12 @@ class Exponent:
         """Whether ``bend`` and ``shift`` make the interval wider by more than a fifth."""
         return self.stderr**2 > WIDER**2 * (self.stderr**2 - self.bend**2 - self.shift**2)
 
+    @property
+    def scatter(self) -> tuple[float, float]:
+        """95 % interval by the scatter of the series alone, without ``bend`` and ``shift``: those say by how much the value may be
+        off, most of all too large, not whether there is growth."""
+        return _interval(self.value, float(np.sqrt(max(self.stderr**2 - self.bend**2 - self.shift**2, 0.0))))
+
     def with_shift(self, shift: float) -> Exponent:
         """The same with an interval that is wider by how far two estimates lie apart."""
         stderr = float(np.hypot(self.stderr, shift))

@@ -40,8 +40,8 @@ def judge(
     called chaotic.
 
     Chaotic needs all of: the series predicts itself, and better than its surrogates do (p at most 0.05); the exponent's whole
-    interval lies above zero, so far that a difference grows by e^10 over the record; the 0-1 test does not deny it, with a K
-    below 0.2; and the motion is steady, with nearest states from all over the record. Regular: no exponent above zero, and
+    interval by the scatter of the series lies above zero, so far that a difference grows by e^10 over the record; the 0-1 test
+    does not deny it, with a K below 0.2; and the motion is steady, with nearest states from all over the record. Regular: no exponent above zero, and
     neighbours stay neighbours or the 0-1 test says regular. Stochastic: not predictable, or no more so than linear noise is, in a
     series of at least 1000 samples and 20 swings: in a shorter one the surrogates often miss chaos. Anything else is undecided.
 
@@ -69,7 +69,7 @@ def _weigh(
     """Word and sentence for a series whose level is steady."""
     if exponent is None:
         return ("undecided", "The series is too short for a local map of its motion.")
-    low, high = exponent.interval
+    low, high = exponent.scatter
     nonlinear = surrogates.p_value <= SIGNIFICANT
     told = f"p = {surrogates.p_value:.3g} against {surrogates.count} {surrogates.kind.upper()} surrogates"
     grows = low > 0.0 and low * samples > GROWS
@@ -95,7 +95,7 @@ def _weigh(
         return (
             "chaotic",
             f"The series predicts itself better than linear noise would ({told}), and small differences grow exponentially: the "
-            f"whole interval of the largest exponent lies above zero.",
+            f"largest exponent lies above zero by more than the series scatters.",
         )
     if exponent.predicts and flat and (curve.stays_near or walk.k < STAYS):
         seen = f"the 0-1 test finds no wandering (K = {walk.k:.2f})"
