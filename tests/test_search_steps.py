@@ -39,6 +39,9 @@ class Bench:
     def fit_softly(self, trial, *_):
         return trial
 
+    def contained(self, name):
+        return self.laws[name].absorbs
+
     def rests(self, port):
         return True
 

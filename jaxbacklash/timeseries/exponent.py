@@ -45,8 +45,8 @@ class Exponent:
 
     @property
     def scatter(self) -> tuple[float, float]:
-        """95 % interval by the scatter of the series alone, without ``bend`` and ``shift``: those say by how much the value may be
-        off, most of all too large, not whether there is growth."""
+        """95 % interval by the scatter of the series alone, without ``bend`` and ``shift``: those say by how much the value may
+        be off, not whether there is growth."""
         return _interval(self.value, float(np.sqrt(max(self.stderr**2 - self.bend**2 - self.shift**2, 0.0))))
 
     def with_shift(self, shift: float) -> Exponent:

@@ -41,9 +41,10 @@ def judge(
 
     Chaotic needs all of: the series predicts itself, and better than its surrogates do (p at most 0.05); the exponent's whole
     interval by the scatter of the series lies above zero, so far that a difference grows by e^10 over the record; the 0-1 test
-    does not deny it, with a K below 0.2; and the motion is steady, with nearest states from all over the record. Regular: no exponent above zero, and
-    neighbours stay neighbours or the 0-1 test says regular. Stochastic: not predictable, or no more so than linear noise is, in a
-    series of at least 1000 samples and 20 swings: in a shorter one the surrogates often miss chaos. Anything else is undecided.
+    does not deny it, with a K below 0.2; and the motion is steady, with nearest states from all over the record. Regular: no
+    exponent above zero, and neighbours stay neighbours or the 0-1 test says regular. Stochastic: not predictable, or no more so
+    than linear noise is, in a series of at least 1000 samples and 20 swings: in a shorter one the surrogates often miss chaos.
+    Anything else is undecided.
 
     Parameters
     ----------
