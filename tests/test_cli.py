@@ -111,7 +111,7 @@ MISTAKES = {
     "refine with a negative inertia": (["refine", "rec.csv", "--inertia", "-3"], "--inertia -3"),
     "refine with a window too short": (["refine", "rec.csv", "--window", "0.001"], "--window 0.001"),
     "refine with a held-out record that is missing": (["refine", "rec.csv", "--heldout", "nothere.csv"], "nothere.csv"),
-    "refine with a held-out record of another kind": (["refine", "rec.csv", "--heldout", "torque.csv"], "wanted a record of that"),
+    "refine with a held-out record of another kind": (["refine", "rec.csv", "--heldout", "torque.csv"], "wanted a record of"),
     "refine into a file": (["refine", "rec.csv", "--out", "rec.csv"], "rec.csv"),
     "refine with laws that are missing": (["refine", "rec.csv", "--laws", "nothere.py"], "nothere.py"),
     "refine a transmitted torque": (["refine", "torque.csv"], "motion of the link"),
