@@ -7,6 +7,7 @@ ones from a coarse list and the weak form (`screen`).
 
 from __future__ import annotations
 
+import abc
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,7 +28,7 @@ class Corrected:
 
 
 @dataclass(frozen=True)
-class Kind:
+class Kind(abc.ABC):
     """A cause with one size: ``name`` and ``channel`` as in `Cause`; ``mixed`` where only y is concerned though z is recorded."""
 
     channel: str
@@ -43,13 +44,13 @@ class Kind:
     far = True
     """Sizes so large are likely that the search has to begin anew."""
 
+    @abc.abstractmethod
     def corrected(self, record: Record, size: float) -> Corrected:
         """The record without a cause of this size."""
-        raise NotImplementedError
 
+    @abc.abstractmethod
     def coarse(self, record: Record) -> np.ndarray:
         """Sizes to begin from, the null value apart."""
-        raise NotImplementedError
 
     def step(self, record: Record) -> float:
         """A small size, over which the misfit is linear in the data; 0 where the cause has no small sizes."""
