@@ -49,13 +49,14 @@ def uniform_grid(t: np.ndarray) -> np.ndarray | None:
     """
     rows = np.arange(t.size) - (t.size - 1) / 2
     since = t - t[0]
-    step = float(rows @ since / (rows @ rows))
+    square = float(t.size) * (float(t.size) ** 2 - 1.0) / 12.0  # rows @ rows
+    step = float(rows @ since) / square
     error = since - step * rows
     # Once more on what is left: over millions of rows the first slope carries the rounding of its own sums.
-    step += float(rows @ (error - error.mean()) / (rows @ rows))
+    step += float(rows @ (error - error.mean())) / square
     error = since - step * rows
     middle, worst = (error.max() + error.min()) / 2, (error.max() - error.min()) / 2
-    if worst <= max(RELATIVE * step, np.spacing(np.abs(t).max())):
+    if worst <= max(RELATIVE * step, np.spacing(max(abs(t[0]), abs(t[-1])))):
         return t
     if worst > step / 2:
         return None
@@ -63,12 +64,15 @@ def uniform_grid(t: np.ndarray) -> np.ndarray | None:
     for unit in _roundings(t, steps):
         if worst > WITHIN * unit:
             continue
-        usual = np.median(steps)
-        odd = np.count_nonzero(np.abs(steps - usual) > unit / 4)
         # Stamps to a millisecond at 800 Hz: a coarse unit, but as many lost rows would lead away from the line.
-        if unit <= HARMLESS * step or (unit <= step / 2 * (1 + RELATIVE) and odd >= 3) or odd >= ODD:
+        if unit <= HARMLESS * step or _odd_steps(steps, unit) >= (3 if unit <= step / 2 * (1 + RELATIVE) else ODD):
             return t[0] + middle + step * rows
     return None
+
+
+def _odd_steps(steps: np.ndarray, unit: float) -> int:
+    """How many steps differ from the usual one by a unit of rounding and not by the rounding of its own arithmetic."""
+    return int(np.count_nonzero(np.abs(steps - np.median(steps)) > unit / 4))
 
 
 def _roundings(t: np.ndarray, steps: np.ndarray) -> Iterator[float]:

@@ -122,6 +122,8 @@ def join_date_time(dates: np.ndarray, times: np.ndarray) -> np.ndarray:
 def _count(known: np.ndarray, unit: str) -> Count | None:
     """What numbers count, by their size and step; None where they may be seconds of a record."""
     low, high = known.min(), known.max()
+    if not any(count.low <= low and high <= count.high for count in (*COUNTS, *DAYS)) and not 0.0 < low <= high <= 1.0:
+        return None
     step = float(np.median(np.abs(np.diff(known))))
     for count in COUNTS:
         if count.low <= low and high <= count.high and step / count.per_second <= LONGEST_STEP_S:

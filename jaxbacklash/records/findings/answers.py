@@ -8,7 +8,7 @@ import numpy as np
 
 from jaxbacklash.records.finding import REFUSE, WARN, Finding
 
-from .local import SURPRISE_OF_NOISE, level, quantum, surprise
+from .local import EVERY, SURPRISE_OF_NOISE, level, quantum, surprise
 
 LEVELS = 3
 """Values up to which a channel is below its own resolution."""
@@ -53,7 +53,7 @@ def _nothing(values: np.ndarray, name: str, drive: str | None) -> list[Finding]:
     if span < (LEVELS - 0.5) * count:
         what = f"takes {round(span / count) + 1} values only{moved}: its answer is below its resolution of {count:.3g}"
         return [Finding("no-answer", REFUSE, name, what)]
-    some = values[:65536] - np.mean(values[:65536])
+    some = values[:EVERY] - np.mean(values[:EVERY])
     power = float(np.einsum("i,i", some, some))
     if power == 0.0:
         return []
@@ -95,14 +95,14 @@ def _held_first(t: np.ndarray, values: np.ndarray, name: str) -> list[Finding]:
 
 def _stale_first(values: np.ndarray, name: str) -> list[Finding]:
     """First rows that repeat one value, until the channel goes on at full speed."""
-    r = np.abs(surprise(values))
-    noise = max(level(r), 0.3 * quantum(values))
+    noise = max(level(surprise(values[:EVERY])), 0.3 * quantum(values))
     still = np.abs(values[: FIRST + 2] - values[0]) < 5 * noise
     if still.all() or values.size < 4 * FIRST:
         return []
     last = int(np.argmin(still)) - 1  # the last row that is still
     if not 1 <= last <= FIRST:
         return []
+    r = np.abs(surprise(values))
     here, elsewhere = float(np.max(r[max(last - 1, 2) : last + 3])), float(np.max(r[last + 6 :]))
     if here < CORNER * max(elsewhere, SURPRISE_OF_NOISE * noise):
         return []

@@ -8,7 +8,7 @@ import numpy as np
 
 from jaxbacklash.records.finding import ASK, WARN, Finding
 
-from .local import SURPRISE_OF_NOISE, common_step, listed_rows, quantum, runs, surprise
+from .local import EVERY, SURPRISE_OF_NOISE, common_step, listed_rows, quantum, runs, surprise
 
 HELD_ROWS = 4
 """Equal rows from which on they count as filled with the last one, where they end in a jump."""
@@ -34,9 +34,9 @@ def held(channels: Mapping[str, np.ndarray]) -> list[Finding]:
     channels = {name: values for name, values in channels.items() if name != "F"}
     # Whole rows that stand still for longer are said by `held_rows`.
     together = (
-        np.all([np.diff(values) == 0.0 for values in channels.values()], axis=0) if len(channels) > 1 else np.zeros(0, bool)
+        np.logical_and.reduce([np.diff(values) == 0.0 for values in channels.values()]) if len(channels) > 1 else np.zeros(0, bool)
     )
-    first, length = runs(together)
+    first, length = runs(together) if together.any() else (np.zeros(0, dtype=int),) * 2
     rows = [np.arange(a + 1, a + n + 1) for a, n in zip(first, length, strict=True) if n >= HELD_ROWS - 1]
     lost = np.concatenate([np.zeros(0, dtype=int), *rows])
     steady = {name: refreshed_every(values) for name, values in channels.items()}
@@ -68,9 +68,10 @@ def held(channels: Mapping[str, np.ndarray]) -> list[Finding]:
 
 def refreshed_every(values: np.ndarray) -> int:
     """k where a channel has a new value every k-th row only and keeps it in between; 1 where it has one in every row."""
-    changes = np.flatnonzero(np.diff(values))
-    if changes.size < 16 or changes.size > 0.6 * values.size:
+    steps = np.diff(values)
+    if not 16 <= np.count_nonzero(steps) <= 0.6 * values.size:
         return 1
+    changes = np.flatnonzero(steps)
     lengths = np.diff(changes)
     every = int(np.median(lengths))
     if every < 2 or np.count_nonzero(lengths % every == 0) < REGULAR * lengths.size:
@@ -84,21 +85,27 @@ def stale_rows(values: np.ndarray) -> np.ndarray:
     """Rows (from 0) that repeat the value before though the channel is too finely read, or moves too fast, for that by chance."""
     none = np.zeros(0, dtype=int)
     steps = np.diff(values)
+    rests = steps == 0.0
+    if np.count_nonzero(rests) < FEW_STALE:
+        return none
     # Longer runs are a rest, or what `held_rows` speaks of.
-    length = runs(steps == 0.0)[1]
-    still = np.flatnonzero(steps == 0.0)[np.repeat(length < HELD_ROWS, length)] + 1
+    length = runs(rests)[1]
+    still = np.flatnonzero(rests)[np.repeat(length < HELD_ROWS, length)] + 1
     if still.size < FEW_STALE or still.size > MOST * values.size or refreshed_every(values) > 1:
         return none
     count = quantum(values)
     coarsest, repeats = _by_size(values, steps)
     count = max(count, coarsest)
-    single = np.abs(np.abs(steps) - count) < 0.5 * count
+    size = np.abs(steps)
+    single = (size > 0.5 * count) & (size < 1.5 * count)
     repeats = max(repeats, np.count_nonzero(single) / 2)
     # Where noise is many counts even at the quietest, repeats are by chance half as many as steps of a single count to and fro.
     if count < FINE * _quietest(values) and still.size >= FEW_STALE + BY_CHANCE * repeats:
         # A limit that is met again and again is another finding, see `limits`.
         return still[(values[still] < values.max()) & (values[still] > values.min())]
-    rows = _overtaken(values, steps == 0.0, count)
+    rows = _overtaken(values, rests, count)
+    if rows.size < FEW_STALE:
+        return none
     # Samples that move by a single count amid fast motion are as rare as those that do not move at all, but for stale ones.
     expected = _overtaken(values, single, count).size / 2
     return rows if rows.size >= FEW_STALE + BY_CHANCE * expected else none
@@ -109,11 +116,14 @@ def _by_size(values: np.ndarray, steps: np.ndarray) -> tuple[float, float]:
 
     Zero where the steps are multiples of none: then too few of them are small for a repeat by chance.
     """
-    size = np.maximum(np.abs(values[1:]), np.abs(values[:-1]))
-    groups = np.array_split(np.argsort(size), min(max(steps.size // FEWEST, 1), GROUPS))
+    steps = np.abs(steps)
+    # Of a long record the smallest steps: only these tell what it is counted in.
+    some = steps[:: max(1, steps.size // EVERY)]
+    rows = np.flatnonzero(steps <= np.quantile(some, min(EVERY / steps.size, 1.0)))
+    steps, size = steps[rows], np.maximum(np.abs(values[rows]), np.abs(values[rows + 1]))
     coarsest, repeats = 0.0, 0.0
-    for group in groups:
-        found = np.abs(steps[group])
+    for group in np.array_split(np.argsort(size), min(max(steps.size // FEWEST, 1), GROUPS)):
+        found = steps[group]
         found = np.sort(found[found > 1e-12 * size[group[-1]]])
         count = common_step(found)
         if count is not None and found.size > SOME:
@@ -125,8 +135,9 @@ def _by_size(values: np.ndarray, steps: np.ndarray) -> tuple[float, float]:
 
 def _quietest(values: np.ndarray) -> float:
     """The noise of a channel where it moves least: the lowest tenth of its stretches."""
-    r = np.abs(surprise(values))
-    blocks = r[: r.size // BLOCK * BLOCK].reshape(-1, BLOCK)
+    blocks = values[: values.size // BLOCK * BLOCK].reshape(-1, BLOCK)
+    blocks = blocks[:: max(1, values.size // EVERY)]
+    blocks = np.abs(surprise(blocks.ravel())).reshape(-1, BLOCK)[:, 2:-2]
     return float(np.quantile(np.median(blocks, axis=1), 0.1)) / (0.6745 * SURPRISE_OF_NOISE)
 
 

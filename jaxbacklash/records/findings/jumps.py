@@ -8,7 +8,7 @@ import numpy as np
 
 from jaxbacklash.records.finding import ASK, REFUSE, Finding
 
-from .local import POSITIONS, SURPRISE_OF_NOISE, around, level, quantum, surprise
+from .local import POSITIONS, SURPRISE_OF_NOISE, around, beyond, level, quantum, surprise
 
 TURNS = {2 * np.pi: "2 pi", np.pi: "pi", 360.0: "360", 180.0: "180"}
 """Where angles begin anew, in rad and degrees."""
@@ -56,7 +56,7 @@ def turn_of(values: np.ndarray, known: bool = False) -> tuple[float, np.ndarray]
     """The turn by which a position jumps, in its own unit, and the rows before the jumps; None where it does not."""
     steps = np.diff(values)
     span = values.max() - values.min()
-    rows = np.flatnonzero(np.abs(steps) > 0.4 * span)
+    rows = beyond(steps, 0.4 * span)
     if not rows.size or rows.size > steps.size / 2:
         return None
     jumping = np.zeros(steps.size, dtype=bool)
@@ -98,9 +98,12 @@ def shifts_of(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Rows (of the last sample before) and sizes of lasting shifts of a position that moves on as before."""
     none = np.zeros(0, dtype=int), np.zeros(0)
     r = surprise(values)
-    usual = level(r)
-    floor = max(usual * SURPRISE_OF_NOISE, 0.3 * quantum(values))
-    rows = np.flatnonzero(np.abs(r) > 0.5 * SHIFT * floor)
+    floor = level(r) * SURPRISE_OF_NOISE
+    rows = beyond(r, 0.5 * SHIFT * floor)
+    if not rows.size:
+        return none
+    floor = max(floor, 0.3 * quantum(values))
+    rows = rows[np.abs(r[rows]) > 0.5 * SHIFT * floor]
     if not rows.size or rows.size > 50 * SHIFTS:
         return none
     rows = np.unique(np.concatenate([rows - 1, rows]))
@@ -138,10 +141,12 @@ def _not_lost_rows(channels: Mapping[str, np.ndarray], name: str, row: int, size
 
 def shifts(t: np.ndarray, channels: Mapping[str, np.ndarray]) -> list[Finding]:
     """Counts lost: x, y or z alone goes on from another zero."""
+    every = {name: shifts_of(channels[name]) for name in POSITIONS if name in channels}
+    found: list[Finding] = []
+    if not any(rows.size for rows, _ in every.values()):
+        return found
     pauses = np.diff(t)
     gaps = np.flatnonzero(pauses > GAP * np.median(pauses))
-    every = {name: shifts_of(channels[name]) for name in POSITIONS if name in channels}
-    found = []
     for name, (rows, sizes) in every.items():
         # A base that really jumps takes y along, or z the other way.
         others = [row for other, (those, _) in every.items() if other != name for row in those]

@@ -8,7 +8,7 @@ import numpy as np
 
 from jaxbacklash.records.finding import ASK, WARN, Finding
 
-from .local import POSITIONS, SURPRISE_OF_NOISE, around, bridge, level, listed_rows, quantum, runs, surprise
+from .local import POSITIONS, SURPRISE_OF_NOISE, around, beyond, bridge, level, listed_rows, quantum, runs, surprise
 
 CLEAR = 20.0
 """Times what is usual around it that a spike is at least. The corner that an impact leaves in a position looks like a spike to 86
@@ -73,7 +73,7 @@ def code_rows(values: np.ndarray) -> tuple[np.ndarray, str]:
     """Rows of a value that stands for none: far beyond all others, or 0 between samples that are not near it."""
     rows, first = _NONE, 0.0
     good = np.ones(values.size, dtype=bool)
-    for _ in range(3):  # -9999 and 9999 may both be there
+    for _ in range(3 if _reaches_out(values) else 0):  # -9999 and 9999 may both be there
         kept = values[good]
         for code, rest in ((kept.max(), kept[kept < kept.max()]), (kept.min(), kept[kept > kept.min()])):
             if rest.size < (1.0 - MOST) * values.size:
@@ -91,6 +91,20 @@ def code_rows(values: np.ndarray) -> tuple[np.ndarray, str]:
     if rows.size:
         return rows, f"{first:.6g}, far beyond all others: a reading that failed"
     return _zeros(values), "exactly 0 between samples far from it: a reading that failed"
+
+
+def _reaches_out(values: np.ndarray) -> bool:
+    """Whether the largest or the smallest value may be a code.
+
+    A quick look that misses none: some of the samples between them span no more than all of them do.
+    """
+    some = values[:: max(1, values.size // 256)]
+    high, low = values.max(), values.min()
+    some = some[(some < high) & (some > low)]
+    if not some.size:
+        return True
+    top, bottom = some.max(), some.min()
+    return bool(max(high - top, bottom - low) > FAR_OUT * (top - bottom))
 
 
 def _zeros(values: np.ndarray) -> np.ndarray:
@@ -127,9 +141,13 @@ def _zeros(values: np.ndarray) -> np.ndarray:
 def spike_rows(values: np.ndarray) -> np.ndarray:
     """Rows (from 0) of samples that stand out of the motion, alone or a few near one another."""
     r = surprise(values)
-    floor = max(level(r) * SURPRISE_OF_NOISE, 0.3 * quantum(values))
+    floor = level(r) * SURPRISE_OF_NOISE
+    rows = beyond(r, 0.4 * CLEAR * floor)
+    if not rows.size:
+        return _NONE
+    floor = max(floor, 0.3 * quantum(values))
     size = np.abs(r)
-    rows = np.flatnonzero(size > 0.4 * CLEAR * floor)
+    rows = rows[size[rows] > 0.4 * CLEAR * floor]
     rows = rows[(rows >= 4) & (rows < values.size - 4)]
     if not rows.size or rows.size > 5 * MOST * values.size:
         return _NONE

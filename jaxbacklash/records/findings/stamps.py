@@ -127,7 +127,10 @@ def _bursts(t: np.ndarray, steps: np.ndarray) -> list[Finding]:
 
 def time_unit(t: np.ndarray) -> list[Finding]:
     """Milliseconds, microseconds or nanoseconds where seconds are wanted: asked wherever the record could be either."""
-    step = float(np.median(np.diff(t)))
+    steps = np.diff(t)
+    if steps.max() < SLOW:
+        return []
+    step = float(np.median(steps))
     if step < SLOW:
         return []
     name, short, factor = next(
