@@ -25,7 +25,7 @@ def as_link(draft: Draft) -> None:
 def wrap_at_pi(draft: Draft, rng) -> None:
     """The base's angle is kept between -pi and pi, or 0 and 2 pi, and the motion crosses that; its zero is elsewhere."""
     x, start = draft.column("x"), float(pick(rng, 0.0, np.pi))
-    x.values = (x.values + np.pi - start - 0.02 + np.pi) % TURN - np.pi + start
+    x.values = (x.values - 0.02) % TURN - np.pi + start
     _unwrapped(draft, rng, r"2 ?pi|turn|6\.28|wrap")
 
 

@@ -57,8 +57,11 @@ def find(
         channels = mend.after(t, channels, {}, new)[1] if new else channels
         found += new
     new = _open(quantities.quantities(_others(channels, found), options, units_stated), options, units_stated)
-    if not found and any(one.kind == "degrees" for one in new):
-        new = _open(relations.instead_of_degrees(channels, extras), options, units_stated) or new
+    if any(one.kind == "degrees" for one in new):  # A size, which a gear or a sample never measured changes too.
+        if _waiting(found):
+            new = [one for one in new if one.kind != "degrees"]
+        else:
+            new = _open(relations.before_sizes(channels, extras), options, units_stated) or new
     found += new
     for whole in (
         lambda: limits.clipped(channels) or held.held_rows(channels) or jumps.shifts(t, channels),

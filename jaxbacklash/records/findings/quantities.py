@@ -18,6 +18,9 @@ MAX_RELATIVE_RAD = 1.0
 it is no joint with play, while a degree or two read as radians exceeds it."""
 MAX_BASE_RAD = 2 * np.pi
 """The base may swing widely, but one full turn away from its middle is more than a base that shakes a joint does."""
+MILLI = {"z": 10.0, "y": 10.0, "x": 360.0}
+"""From here on, in the column's own numbers, milliradians are likelier than degrees: few joints give by 10 degrees. Both are
+named."""
 COUNTS = 20.0
 """Range of a column of whole numbers from which on it is one of counts: no joint of that many radians or metres is read to 1."""
 INERTIAL = re.compile(r"(^|[^a-z])(a[ _.-]?[xyz]|acc\w*|gyr\w*)($|[^a-z])", re.IGNORECASE)
@@ -44,7 +47,7 @@ def degrees(channels: Mapping[str, np.ndarray], stated: Collection[str]) -> list
     Returns
     -------
     list of Finding
-        At most one, which names the channel, its peak and the two ways out.
+        At most one, which names the channel, its peak and the ways out, the likeliest as its remedy.
     """
     suspects = {}
     if "z" in channels:
@@ -66,9 +69,15 @@ def degrees(channels: Mapping[str, np.ndarray], stated: Collection[str]) -> list
     what = {"z": "relative motion", "y": "motion y - x relative to the base", "x": "base motion"}[name]
     # When one channel is in degrees so, as a rule, is the other, though it may be too small to look wrong by itself.
     both = [each for each in ("x", "z", "y") if each in channels and each not in stated]
-    found = f"is a {what} of up to {peak:.6g}, where a joint has at most {most:.6g} radians; it may be in degrees"
-    ways = [",".join(f"{each}={unit}" for each in names) for names, unit in ((both, "deg"), (beyond, "rad"))]
-    return [Finding("degrees", ASK, name, found, f"--unit {ways[0]}", size=peak, otherwise=f"--unit {ways[1]}")]
+    deg, mrad, rad = (
+        "--unit " + ",".join(f"{each}={unit}" for each in names)
+        for names, unit in ((both, "deg"), (both, "mrad"), (beyond, "rad"))
+    )
+    text, remedy = f"degrees, or in milliradians ({mrad})", deg
+    if peak > MILLI[name]:
+        text, remedy = f"milliradians, or in degrees ({deg})", mrad
+    found = f"is a {what} of up to {peak:.6g}, where a joint has at most {most:.6g} radians; it may be in {text}"
+    return [Finding("degrees", ASK, name, found, remedy, size=peak, otherwise=rad)]
 
 
 def _inertial(channels: Mapping[str, np.ndarray], options: ReadOptions) -> list[Finding]:

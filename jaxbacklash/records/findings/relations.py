@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Mapping
-from fractions import Fraction
 
 import numpy as np
 
@@ -60,10 +59,13 @@ def relations(channels: Mapping[str, np.ndarray], extras: Mapping[str, np.ndarra
     return _taken_for_y(x, z) or _turned(x, z) if z is not None else []
 
 
-def instead_of_degrees(channels: Mapping[str, np.ndarray], extras: Mapping[str, np.ndarray]) -> list[Finding]:
-    """What explains too large a motion better than degrees in all channels: three axes of one sensor, or two units."""
-    found = relations(channels, extras)
-    return [one for one in found if one.kind == "axes" or (one.kind == "gear" and one.remedy.startswith("--unit"))]
+def before_sizes(channels: Mapping[str, np.ndarray], extras: Mapping[str, np.ndarray]) -> list[Finding]:
+    """What is asked of x, y and z before the size of their motion is judged.
+
+    A gear, a turned encoder or a y taken for z stays what it is when all channels are in degrees, while each of them changes the
+    size of y - x, by which degrees are told from radians.
+    """
+    return [one for one in relations(channels, extras) if one.action != WARN]
 
 
 def _three(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> list[Finding]:
@@ -86,29 +88,34 @@ def _three(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> list[Finding]:
 
 def _following(x: np.ndarray, y: np.ndarray) -> list[Finding]:
     """A y that follows x in slow motion, but smaller, larger or the other way."""
-    gain = slow_gain(x, y)
-    if gain is None or 1 / LIKE_ONE < gain < LIKE_ONE:
+    gain, open_ = slow_gain(x, y) or (1.0, 0.0)
+    if 1 / LIKE_ONE < gain < LIKE_ONE:
         return []
     if -LIKE_ONE < gain < -1 / LIKE_ONE:
         what = "follows -x in slow motion, as an encoder that is mounted the other way round"
         return [Finding("sign", ASK, "y", what, "--sign y", size=gain)]
     ratio = 1.0 / gain
-    whole = round(ratio) if abs(ratio) > 1.5 and abs(ratio / round(ratio) - 1) < 0.1 else ratio
-    simple = float(Fraction(abs(ratio)).limit_denominator(4)) * np.sign(ratio)  # 5:2, 4:3
-    if abs(ratio - simple) < NEAR * abs(ratio):
-        whole = simple
-    what = f"follows x at {gain:.3g} in slow motion, as behind a gear or in another unit"
-    gear = f"--ratio {whole:.4g}"
+    what = f"follows x at {gain:.3g}, to within {100 * open_:.0f} %, in slow motion, as behind a gear or in another unit"
+    gear = f"--ratio {_of_teeth(ratio):.4g}"
     unit = next((said for per_radian, said in UNITS.items() if abs(ratio / per_radian - 1.0) < NEAR), "")
     if unit:
         return [Finding("gear", ASK, "y", what, f"--unit {unit}", size=gain, otherwise=gear)]
     return [Finding("gear", ASK, "y", what, gear, size=gain)]
 
 
+def _of_teeth(ratio: float) -> float:
+    """The simplest ratio of a gear near a measured one: whole before halves (5:2), thirds (4:3) and quarters."""
+    for parts in range(1, 5):
+        simple = round(parts * ratio) / parts
+        if abs(ratio - simple) < NEAR * abs(ratio):
+            return simple
+    return float(round(ratio)) if abs(ratio) > 1.5 and abs(ratio / round(ratio) - 1) < 0.1 else ratio
+
+
 def _taken_for_y(x: np.ndarray, z: np.ndarray) -> list[Finding]:
     """A z that follows x as the link itself does."""
-    gain = slow_gain(x, z)
-    if gain is None or not 1 / LIKE_ONE < gain < LIKE_ONE:
+    gain, _ = slow_gain(x, z) or (0.0, 0.0)
+    if not 1 / LIKE_ONE < gain < LIKE_ONE:
         return []
     what = "follows x one to one in slow motion, as the link's own motion y does and relative motion z = y - x does not"
     return [Finding("absolute", ASK, "z", what, "--columns y=z", size=gain)]
@@ -129,11 +136,11 @@ def _turned(x: np.ndarray, z: np.ndarray) -> list[Finding]:
     return []
 
 
-def slow_gain(x: np.ndarray, y: np.ndarray) -> float | None:
-    """The factor by which y follows x in the slowest motion there is; None where it does not simply follow.
+def slow_gain(x: np.ndarray, y: np.ndarray) -> tuple[float, float] | None:
+    """The factor by which y follows x in the slowest motion there is, and how well it is known; None where it does not follow.
 
     Two neighbouring bands of an octave, from the slowest on that holds a hundredth of x's power, must be coherent, in step, and
-    show the same factor.
+    show the same factor. The share by which they differ, at least `NEAR`, is what play and resonance leave open.
     """
     bands = _gains(x, y)[:2]
     if len(bands) < 2 or bands[1][0] != 2 * bands[0][0]:
@@ -145,7 +152,7 @@ def slow_gain(x: np.ndarray, y: np.ndarray) -> float | None:
     slow, next_ = bands[0][2], bands[1][2]
     if not 1 / FLAT < abs(next_ / slow) < FLAT or slow.real * next_.real < 0:
         return None
-    return float(slow.real)
+    return float(slow.real), max(NEAR, abs(float(next_.real / slow.real) - 1.0))
 
 
 def _gains(x: np.ndarray, y: np.ndarray) -> list[tuple[int, float, complex]]:
