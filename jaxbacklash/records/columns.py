@@ -139,6 +139,8 @@ def _complete(table: Table, numbers: Mapping[str, int], where: str, timed: bool)
     if unused is not None:
         raise wrong(f"{where}, column {unused}", table.left_out[unused], "one number for each sample")
     named = f"the columns {listed(table.names)}"
+    if all(name == f"column {number}" for number, name in enumerate(table.names, 1)):
+        named += " (by number, for want of a header)"
     missing = "a time column t" if timed and "t" not in numbers else f"{WANTED_CHANNELS} beside it"
     roles = guess_roles(table)
     option = columns_option(table, roles)

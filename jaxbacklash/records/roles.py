@@ -133,9 +133,10 @@ def _motion(table: Table, found: dict[str, int], number: int) -> str:
 
 
 def spec_of(table: Table, number: int) -> str:
-    """How `--columns` names a column: by its name, in quotes where that holds a comma, by number where it cannot be written."""
+    """How `--columns` names a column: by its name, in quotes where that holds a comma; by number where that cannot be written."""
     name = table.columns[number].name
-    if table.names.count(name) > 1 or name.startswith("#") or not name.isprintable() or any(mark in name for mark in "\"'=`!\\"):
+    unwritable = name.startswith("#") or not name.isprintable() or any(mark in name for mark in "\"'=`!\\")
+    if unwritable or table.names.count(name) > 1 or name == f"column {number + 1}":
         return f"#{number + 1}"
     return f'"{name}"' if "," in name else name
 
