@@ -10,14 +10,15 @@ import jaxbacklash as jb
 from jaxbacklash.causes import find_causes
 from jaxbacklash.causes.resampled import read_at
 from jaxbacklash.commands.fit import deliver
+from jaxbacklash.records.findings.quantities import degrees
 from tests.hidden import NOISE, hidden
 
 SECONDS = 6.0
 
 
 def dressed(record, **channels):
-    """The record with other channels."""
-    return jb.Record(record.t, channels)
+    """The record with other channels, their unit stated where a user is asked for it: a motor's turns exceed a joint's."""
+    return jb.Record(record.t, channels, confirmed=frozenset(finding.channel for finding in degrees(channels, ())))
 
 
 def late(truth, name, samples, rng):
