@@ -124,6 +124,14 @@ def test_what_is_read_between_samples_is_the_motion_and_its_noise_is_told():
 
 
 @pytest.mark.slow
+def test_a_link_held_for_most_of_a_short_record_is_no_error():
+    t = 0.01 * np.arange(200.0)
+    swing = 0.05 * np.cos(25.0 * t[:50]) * np.exp(-2.0 * t[:50])
+    z = np.concatenate([np.full(150, 0.05), swing]) + 1e-5 * np.random.default_rng(0).standard_normal(t.size)
+    assert find_causes(jb.fit(jb.Record(t, {"z": z}), starts=1)) == []
+
+
+@pytest.mark.slow
 def test_a_late_channel_is_named_where_the_intervals_are_printed(tmp_path, capsys):
     record, inertia, _, truth = spoiled("delay", 1)
     fit = jb.fit(record, inertia=inertia, starts=1)

@@ -93,7 +93,10 @@ def _shown(bench: Bench) -> Iterator[Guess]:
         return
     for kind in shown_kinds(record):
         for size in kind.coarse(record):
-            start = _screened(bench.fit, kind.corrected(record, size).record)
+            try:
+                start = _screened(bench.fit, kind.corrected(record, size).record)
+            except BadInput:  # too little of it is left to be a record
+                continue
             yield Guess(kind, float(size), None if start is None else started(bench.fit.system, start), 0.0)
 
 
