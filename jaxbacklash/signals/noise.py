@@ -39,7 +39,7 @@ class NoiseEstimate:
 
 def noise_level(t: np.ndarray, values: np.ndarray, *, window: float | None = None) -> float:
     """Standard deviation of the white noise on a motion that is smooth but for a few corners: the level of `estimate_noise`."""
-    return estimate_noise(t, values, window=window).level
+    return _left(t, values, window)[0]
 
 
 def estimate_noise(t: np.ndarray, values: np.ndarray, *, window: float | None = None) -> NoiseEstimate:
@@ -57,6 +57,15 @@ def estimate_noise(t: np.ndarray, values: np.ndarray, *, window: float | None = 
     t, values : uniform samples, shape (N,), t in s, values in any unit
     window : length over which knot counts are chosen [s]; default `span`
     """
+    level, quiet, spacing = _left(t, values, window)
+    least = rounding_noise(values)
+    allowed = max(ALIKE, SURE / np.sqrt(quiet.size))
+    told = bool(np.all(np.abs(_correlations(quiet) - _of_noise_alone(t, spacing)) < allowed))
+    return NoiseEstimate(level, told or level <= least, least)
+
+
+def _left(t: np.ndarray, values: np.ndarray, window: float | None) -> tuple[float, np.ndarray, float]:
+    """Level of the noise, the rest of ordinary pieces (P, L), and the spacing [s] of the knots of the spline that left it."""
     window = span((t[-1] - t[0]) / (t.size - 1)) if window is None else window
     spacing = window / choose_intervals(t, values, window)
     fitted = fit_spline(t, values, t[0], spacing)
@@ -66,12 +75,8 @@ def estimate_noise(t: np.ndarray, values: np.ndarray, *, window: float | None = 
     pieces = max(1, t.size // length)
     rows = residual[: pieces * length].reshape(pieces, -1)
     energy = np.sum(rows**2, axis=1)
-    least = rounding_noise(values)
-    quiet = rows[energy <= QUIET_ENOUGH * np.median(energy)]
-    allowed = max(ALIKE, SURE / np.sqrt(quiet.size))
-    told = bool(np.all(np.abs(_correlations(quiet) - _of_noise_alone(t, spacing)) < allowed))
     level = fitted.noise if pieces < FEW_PIECES else float(np.sqrt(np.median(energy) / _chi2_median(length * per_sample)))
-    return NoiseEstimate(max(level, least), told or level < least, least)
+    return max(level, rounding_noise(values)), rows[energy <= QUIET_ENOUGH * np.median(energy)], spacing
 
 
 def _of_noise_alone(t: np.ndarray, spacing: float) -> np.ndarray:

@@ -33,9 +33,8 @@ def held(channels: Mapping[str, np.ndarray]) -> list[Finding]:
     """Channels that hold their value; of a force that is how amplifiers put it out."""
     channels = {name: values for name, values in channels.items() if name != "F"}
     # Whole rows that stand still for longer are said by `held_rows`.
-    together = (
-        np.logical_and.reduce([np.diff(values) == 0.0 for values in channels.values()]) if len(channels) > 1 else np.zeros(0, bool)
-    )
+    stands = [np.diff(values) == 0.0 for values in channels.values()]
+    together = np.logical_and.reduce(stands) if len(stands) > 1 else np.zeros(0, dtype=bool)
     first, length = runs(together) if together.any() else (np.zeros(0, dtype=int),) * 2
     rows = [np.arange(a + 1, a + n + 1) for a, n in zip(first, length, strict=True) if n >= HELD_ROWS - 1]
     lost = np.concatenate([np.zeros(0, dtype=int), *rows])
