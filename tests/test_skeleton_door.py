@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import jaxbacklash as jb
-from jaxbacklash.criticism import cross_check
+from jaxbacklash.cross_check import cross_check
 from jaxbacklash.report import figures
 from jaxbacklash.report.result import cross_check as cross_check_json
 from jaxbacklash.report.skeleton_report import skeleton_panels

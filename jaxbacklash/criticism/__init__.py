@@ -1,7 +1,5 @@
 """Where a model fails, the torque it misses, which effect that is, and the loop that adds it."""
 
-from .cross_check import CrossCheck as CrossCheck
-from .cross_check import cross_check as cross_check
 from .failures import Dependence as Dependence
 from .latent import Latent as Latent
 from .latent import missing_torque as missing_torque

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..causes import Cause
-from ..criticism.cross_check import cross_check as skeletons_beside
+from ..cross_check import cross_check as skeletons_beside
 from ..fitting import Comparison, Estimate, Fit, Score
 from ..fitting.equation_error import Start
 from ..fitting.print_fit import doubt, verdict_text

@@ -11,13 +11,13 @@ from typing import Any
 
 import numpy as np
 
-from ..effects import Contact
-from ..errors import BadInput, NoAnswer
-from ..fitting import Fit
-from ..fitting.loop import read_plateau
-from ..pointwise import along
-from ..signals import choose_intervals, fit_spline, span
-from ..skeletons import Skeleton, Skeletons, skeleton
+from .effects import Contact
+from .errors import BadInput, NoAnswer
+from .fitting import Fit
+from .fitting.loop import read_plateau
+from .pointwise import along
+from .signals import choose_intervals, fit_spline, span
+from .skeletons import Skeleton, Skeletons, skeleton
 
 AGREE = 3.0
 """Standard errors of the difference within which two methods agree."""
