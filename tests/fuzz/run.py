@@ -112,9 +112,14 @@ def _begin(case: Case, folder: Path) -> _Process:
     with open(case.stdout or out, "wb") as stdout, err.open("wb") as stderr:
         process = subprocess.Popen(
             words, cwd=folder, env=environment(**case.env), stdin=subprocess.DEVNULL, stdout=stdout, stderr=stderr,
-                start_new_session=True
-        )
+            start_new_session=True, preexec_fn=_heeding_interrupts,
+        )  # fmt: skip
     return _Process(process, out, err, time.monotonic())
+
+
+def _heeding_interrupts() -> None:
+    """A run in the background ignores interrupts, and so would all that it starts."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def _ended(case: Case, running: _Process) -> Run:
