@@ -10,8 +10,9 @@ from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting import handed_on as module
 from jaxbacklash.fitting.handed_on import handed_on, stuck_windows
 from jaxbacklash.fitting.levenberg import Levenberg, Minimum
+from jaxbacklash.fitting.problem import Unknowns
 from jaxbacklash.fitting.setup import base_system
-from jaxbacklash.fitting.shooting import Prediction, Unknowns
+from jaxbacklash.fitting.shooting import Prediction
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import values as values_of
 from jaxbacklash.sensors import SensorOffset

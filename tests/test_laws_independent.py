@@ -15,8 +15,9 @@ from jaxbacklash import simulate
 from jaxbacklash.effects import CoulombGround, CoulombJoint, FlexibleLink
 from jaxbacklash.excitation import Harmonic
 from jaxbacklash.fitting.fit import prepare
+from jaxbacklash.fitting.problem import Unknowns
 from jaxbacklash.fitting.setup import make_problem
-from jaxbacklash.fitting.shooting import Unknowns, predictions
+from jaxbacklash.fitting.shooting import predictions
 from jaxbacklash.fitting.windows import cut
 from jaxbacklash.mechanics import Drive
 from jaxbacklash.models import base_motion_joint, free_axis, linear_oscillator

@@ -8,9 +8,10 @@ import pytest
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting.arrow_levenberg import ArrowLevenbergMarquardt
 from jaxbacklash.fitting.levenberg import Levenberg, minimise
+from jaxbacklash.fitting.problem import Unknowns
 from jaxbacklash.fitting.search import TIES, tie_windows
 from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
-from jaxbacklash.fitting.shooting import Unknowns, residuals, shoot
+from jaxbacklash.fitting.shooting import residuals, shoot
 from jaxbacklash.parameters import with_values
 
 from .hidden import hidden

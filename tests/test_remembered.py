@@ -10,9 +10,10 @@ from jaxbacklash.criticism.tried import Tried
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.effects import BoucWen, Dahl, FlexibleLink, Lugre
 from jaxbacklash.fitting.levenberg import Levenberg, minimise
+from jaxbacklash.fitting.problem import Unknowns
 from jaxbacklash.fitting.search import freedom
 from jaxbacklash.fitting.setup import base_system
-from jaxbacklash.fitting.shooting import KEPT, Unknowns, _first_remembered, tie_weights
+from jaxbacklash.fitting.shooting import KEPT, _first_remembered, tie_weights
 from jaxbacklash.mechanics import canonical_name
 from tests.hidden import hidden, noisier
 

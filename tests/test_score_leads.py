@@ -8,9 +8,9 @@ import pytest
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.effects import Dahl
 from jaxbacklash.fitting.compare import compare
+from jaxbacklash.fitting.problem import Unknowns
 from jaxbacklash.fitting.score import score
 from jaxbacklash.fitting.setup import base_system
-from jaxbacklash.fitting.shooting import Unknowns
 from jaxbacklash.parameters import with_values
 from tests.hidden import hidden, noisier
 

@@ -7,9 +7,9 @@ import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.fitting.fit import prepare
+from jaxbacklash.fitting.problem import Unknowns
 from jaxbacklash.fitting.score import score
 from jaxbacklash.fitting.setup import base_system, first_guess, free_names, make_problem
-from jaxbacklash.fitting.shooting import Unknowns
 from jaxbacklash.parameters import with_values
 from tests.hidden import hidden
 

@@ -16,9 +16,9 @@ import numpy as np
 from ..errors import BadInput, NoAnswer
 from ..fitting.fit import Fit
 from ..fitting.levenberg import Levenberg, Minimum, minimise
+from ..fitting.problem import Problem, Unknowns
 from ..fitting.score import Score, score
 from ..fitting.search import freedom, search
-from ..fitting.shooting import Problem, Unknowns
 from ..fitting.windows import Layout, Windows, cut
 from ..parameters import values, with_values
 from ..records import Record

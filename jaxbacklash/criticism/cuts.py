@@ -11,10 +11,10 @@ import equinox as eqx
 import numpy as np
 
 from ..fitting.levenberg import Levenberg, Minimum, minimise
+from ..fitting.problem import Problem, Unknowns
 from ..fitting.score import kept_residuals
 from ..fitting.search import TIES, tie_windows
 from ..fitting.setup import first_guess
-from ..fitting.shooting import Problem, Unknowns
 from .workbench import PATIENCE, Trial, Workbench
 
 OFF = 25.0

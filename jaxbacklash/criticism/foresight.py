@@ -12,8 +12,8 @@ from concurrent.futures import ThreadPoolExecutor
 from types import TracebackType
 
 from ..fitting.levenberg import Levenberg, fetch, ready
+from ..fitting.problem import Problem
 from ..fitting.setup import first_guess
-from ..fitting.shooting import Problem
 from ..mechanics import AbstractEffect
 from ..parameters import values, with_values
 from ..system import System

@@ -21,8 +21,9 @@ import numpy as np
 from ..errors import NoAnswer
 from ..fitting import Fit
 from ..fitting.fit import prepare
+from ..fitting.problem import Problem, Unknowns
 from ..fitting.setup import first_guess, free_names, make_problem
-from ..fitting.shooting import Blocks, Problem, Trajectory, Unknowns
+from ..fitting.shooting import Blocks, Trajectory
 from ..parameters import unit_text, values, with_values
 from ..pointwise import along
 from ..precision import require_double_precision

@@ -10,8 +10,8 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..fitting import Fit, Score
+from ..fitting.problem import Unknowns
 from ..fitting.setup import make_problem
-from ..fitting.shooting import Unknowns
 from ..mechanics import AbstractEffect
 from ..parameters import free_specs, specs, values
 from ..precision import require_double_precision

@@ -19,10 +19,10 @@ from ..fitting.estimates import judge
 from ..fitting.fit import ABSOLUTE, Fit, prepare
 from ..fitting.force import tell_way
 from ..fitting.left_over import why_open
+from ..fitting.problem import Problem, Unknowns
 from ..fitting.score import Score, score
 from ..fitting.search import TIES, inverse_information, silent
 from ..fitting.setup import base_system, first_guess, free_names
-from ..fitting.shooting import Problem, Unknowns
 from ..fitting.size import check_size
 from ..fitting.windows import Windows
 from ..precision import require_double_precision

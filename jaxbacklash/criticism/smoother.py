@@ -18,12 +18,11 @@ import jax.scipy.linalg as jsl
 import numpy as np
 
 from ..compiled import kept_jit, lasting_jit
+from ..fitting.problem import Problem, Unknowns
 from ..fitting.shooting import (
     Blocks,
     Prediction,
-    Problem,
     Trajectory,
-    Unknowns,
     assemble,
     local_coefficients,
     predict,

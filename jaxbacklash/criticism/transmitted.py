@@ -14,7 +14,8 @@ import numpy as np
 from scipy import linalg
 
 from ..fitting import Fit
-from ..fitting.shooting import Problem, Unknowns, local_coefficients, trajectory
+from ..fitting.problem import Problem, Unknowns
+from ..fitting.shooting import local_coefficients, trajectory
 from ..mechanics import Drive
 from ..parameters import unit_text
 from ..pointwise import along

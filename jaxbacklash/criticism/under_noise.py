@@ -17,8 +17,9 @@ import equinox as eqx
 import numpy as np
 
 from ..fitting.levenberg import Levenberg, minimise
+from ..fitting.problem import Problem, Unknowns
 from ..fitting.search import TIES
-from ..fitting.shooting import Prediction, Problem, Unknowns
+from ..fitting.shooting import Prediction
 from ..mechanics import AbstractEffect
 from ..records import Record
 from .along_motion import motion, own_torques

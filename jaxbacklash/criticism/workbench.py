@@ -19,9 +19,9 @@ from ..fitting.handed_on import handed_on
 from ..fitting.held import held, search_held
 from ..fitting.left_over import quieter_elsewhere
 from ..fitting.levenberg import Levenberg, Minimum, minimise
+from ..fitting.problem import Problem, Unknowns
 from ..fitting.search import ADEQUATE, LOOSE, NEAR, TIES, freedom, tie_windows
 from ..fitting.setup import first_guess, free_names, held_system, make_problem, read_through
-from ..fitting.shooting import Problem, Unknowns
 from ..fitting.softened import through_softened
 from ..fitting.windows import Layout, Windows
 from ..mechanics import AbstractEffect, canonical_name, catalogue

@@ -11,7 +11,8 @@ import jax.numpy as jnp
 import optimistix as optx
 
 from .arrow import solve
-from .shooting import Blocks, Prediction, Problem, Unknowns, linearise, shoot
+from .problem import Problem, Unknowns
+from .shooting import Blocks, Prediction, linearise, shoot
 
 Array = Any
 _shoot, _linearise = eqx.filter_jit(shoot), eqx.filter_jit(linearise)  # traced once, though a search writes them down thrice

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -18,9 +18,7 @@ import jax.numpy as jnp
 from ..mechanics import AbstractEffect, Instant
 from ..parameters import Scalar, specs
 from ..system import State, System
-
-if TYPE_CHECKING:
-    from .shooting import Problem
+from .problem import Problem
 
 Array = Any
 FEW = 4

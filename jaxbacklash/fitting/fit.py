@@ -24,11 +24,11 @@ from .hard import SHORTEST, SUSPECT, contact_samples, harder, most_play, travel_
 from .held import held as is_held
 from .left_over import EXPLAINED, quieter_elsewhere, settle_noise, why_open
 from .lengths import PANELS, longest_panel, score_window, shooting_window
+from .problem import Problem, Unknowns
 from .profile import with_profiles
 from .score import Score, score
 from .search import Found, misfit, search, silent
 from .setup import base_system, first_guess, free_names, make_problem
-from .shooting import Problem, Unknowns
 from .size import check_size
 from .windows import Layout, Windows, crossing_time, cut
 

@@ -15,8 +15,9 @@ import equinox as eqx
 import numpy as np
 
 from .levenberg import Levenberg, Minimum, minimise
+from .problem import Problem, Unknowns
 from .setup import read_through
-from .shooting import Problem, Unknowns, weighed
+from .shooting import weighed
 
 WORSE, MATTERS, FEW = 5.0, 0.01, 0.05
 """A window has stuck that misses by so many times the median square; it matters where such windows hold that share of all misfit,

@@ -20,7 +20,8 @@ from ..mechanics import Drive
 from ..system import System
 from .chunks import scan_used
 from .levenberg import Levenberg, minimise
-from .shooting import Problem, Unknowns, local_coefficients, trajectory
+from .problem import Problem, Unknowns
+from .shooting import local_coefficients, trajectory
 
 Array = Any
 TIE = 100.0

@@ -11,8 +11,8 @@ import numpy as np
 
 from .handed_on import WORSE, begun, led_in, squares_of
 from .levenberg import Levenberg, Minimum, minimise
+from .problem import Problem, Unknowns
 from .setup import at_rest
-from .shooting import Problem, Unknowns
 
 LEADS, GAIN = 8, 0.01
 """How often windows are begun anew at most, what one remembers reaching one more each time; and the share of half the sum of

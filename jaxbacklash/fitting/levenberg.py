@@ -11,7 +11,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..compiled import kept_jit
-from .shooting import Problem, Unknowns
+from .problem import Problem, Unknowns
 
 Array = Any
 MOST = 1000

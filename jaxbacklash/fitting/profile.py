@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 
 from .estimates import NORMAL_95, Estimate
 from .levenberg import Levenberg, minimise
-from .shooting import Problem, Unknowns
+from .problem import Problem, Unknowns
 
 
 def with_profiles(

@@ -17,7 +17,8 @@ from .handed_on import follows, handed_on
 from .led_on import led_on
 from .lengths import SCORE_WINDOW
 from .levenberg import Levenberg, Minimum, minimise
-from .shooting import Problem, Unknowns, residuals
+from .problem import Problem, Unknowns
+from .shooting import residuals
 from .windows import Layout
 
 NEAR = 1e-4

@@ -13,8 +13,8 @@ from ..system import System
 from .handed_on import handed_on
 from .held import correlation, held, search_held
 from .levenberg import Levenberg, Minimum, minimise
+from .problem import Problem, Unknowns
 from .setup import first_guess, make_problem
-from .shooting import Problem, Unknowns
 from .stretch import excess_of, stretch, told
 from .windows import Windows
 

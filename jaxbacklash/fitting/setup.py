@@ -19,7 +19,7 @@ from ..system import System, observe
 from .equation_error import Start, estimate
 from .held import held, march, place
 from .loop import read_loop
-from .shooting import Problem, Unknowns
+from .problem import Problem, Unknowns
 from .windows import Windows
 
 MODELS = ("joint", "linear", "free")

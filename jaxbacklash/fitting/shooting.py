@@ -21,12 +21,11 @@ import jax
 import jax.numpy as jnp
 
 from ..mechanics import Drive
-from ..parameters import unravel
 from ..signals import DEGREE
 from ..solvers.substeps import run_panels
-from ..system import System
 from .awake import waking
 from .chunks import by_chunks
+from .problem import Problem, Unknowns
 from .tangents import drive, rows, trajectories
 from .windows import Windows
 
@@ -38,42 +37,6 @@ KEPT = 10.0
 unit, and a hundred-thousandth where the motion is tied a hundred times as sharply. The record does not show it: left free it
 would fit noise, and more in a window than a joint can do. Friction that never slips uses little of its reach, and a jump by
 little of that is a large one in torque."""
-
-
-class Unknowns(eqx.Module):
-    """``theta`` (q,) free parameters in units of their scale; ``starts`` (n, W); ``coefficients`` (W, m)."""
-
-    theta: Array
-    starts: Array
-    coefficients: Array
-
-
-class Problem(eqx.Module):
-    """Windows, a system, and which of its parameters are free.
-
-    ``base`` (p,) all parameter values; ``directions`` (p, q) how they move with the free ones (column j: scale of free
-    parameter j at its place); ``lower``, ``upper`` (q,) bounds in the same units; ``shrink`` (q,) True where a value must
-    keep its sign, so that no step may take it below a third or above three times; ``tie`` overall weight of the ties;
-    ``active`` how many of the q directions are not zero, those first.
-    """
-
-    windows: Windows
-    system: System
-    base: Array
-    directions: Array
-    lower: Array
-    upper: Array
-    shrink: Array
-    tie: Array
-    active: Array
-
-    def parameters(self, theta: Array) -> Array:
-        """All parameter values, shape (p,)."""
-        return self.base + self.directions @ theta
-
-    def rebuild(self, theta: Array) -> System:
-        """The system with the free parameters at ``theta``."""
-        return unravel(self.system, self.parameters(theta))
 
 
 class Blocks(eqx.Module):

@@ -13,8 +13,8 @@ import equinox as eqx
 import numpy as np
 
 from ..parameters import values
+from .problem import Problem, Unknowns
 from .search import TIES, tie_windows
-from .shooting import Problem, Unknowns
 
 NARROWER = ((0.03, 0.01, 0.003, 0.001, 0.0003), (0.3, 0.1, 0.03, 0.01, 0.003))
 """The range in which the sign turns, one after the other, in parts of the speed at which friction slides: two ways, the first

@@ -6,7 +6,8 @@ import equinox as eqx
 import numpy as np
 
 from .levenberg import Minimum
-from .shooting import Problem, Unknowns, per_window
+from .problem import Problem, Unknowns
+from .shooting import per_window
 
 STRETCH = 64
 """Windows of a stretch, the last of which holds no sample."""
