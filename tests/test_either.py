@@ -7,7 +7,7 @@ import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.criticism.either import between, either
-from jaxbacklash.fitting.fit import Fit
+from jaxbacklash.fitting.result import Fit
 
 JOINT = {"backlash": 0.02, "stiffness": 1e4, "damping": 5.0}
 

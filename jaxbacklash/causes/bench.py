@@ -14,9 +14,9 @@ import equinox as eqx
 import numpy as np
 
 from ..errors import BadInput, NoAnswer
-from ..fitting.fit import Fit
 from ..fitting.levenberg import Levenberg, Minimum, minimise
 from ..fitting.problem import Problem, Unknowns
+from ..fitting.result import Fit
 from ..fitting.score import Score, score
 from ..fitting.search import freedom, search
 from ..fitting.windows import Layout, Windows, cut

@@ -9,8 +9,8 @@ from shlex import quote
 import numpy as np
 
 from ..fitting.estimates import Estimate
-from ..fitting.fit import Fit
-from ..fitting.print_fit import number
+from ..fitting.print_estimate import number
+from ..fitting.result import Fit
 from ..parameters import channel_unit
 from ..records import Record
 from .bench import Point

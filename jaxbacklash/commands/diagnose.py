@@ -15,7 +15,7 @@ from ..criticism.ranking import table
 from ..errors import BadInput
 from ..fitting import Fit
 from ..fitting import fit as fit_records
-from ..fitting.print_fit import causes_text
+from ..fitting.result import causes_text
 from ..fitting.setup import add_effects
 from ..model_file import dump_model
 from ..report.refine_result import candidates_json

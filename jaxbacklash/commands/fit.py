@@ -13,7 +13,7 @@ from ..causes import Cause, find_causes
 from ..errors import BadInput
 from ..fitting import Fit
 from ..fitting import fit as fit_records
-from ..fitting.print_fit import text as fit_text
+from ..fitting.result import text as fit_text
 from ..fitting.setup import add_effects
 from ..model_file import dump_model
 from ..report.result import as_json as result_of

@@ -6,9 +6,8 @@ from collections.abc import Callable, Sequence
 
 from ..causes import Cause, find_causes
 from ..errors import NoAnswer
-from ..fitting.fit import Fit
 from ..fitting.fit import fit as fit_record
-from ..fitting.print_fit import causes_text
+from ..fitting.result import Fit, causes_text
 from ..fitting.search import silent
 from ..records import Record
 from ..system import System

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..fitting.estimates import judge
-from ..fitting.fit import Fit
+from ..fitting.result import Fit
 from .evidence import gain
 from .workbench import Trial
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from ..fitting.print_fit import at_most, doubt, line
+from ..fitting.print_estimate import line
+from ..fitting.result import at_most, doubt
 from ..parameters import channel_unit
 from .ranking import of_stage, table
 

@@ -16,10 +16,11 @@ from ..fitting.answers import check_answers
 from ..fitting.counts import few_counts
 from ..fitting.equation_error import Start
 from ..fitting.estimates import judge
-from ..fitting.fit import ABSOLUTE, Fit, prepare
+from ..fitting.fit import ABSOLUTE, prepare
 from ..fitting.force import tell_way
 from ..fitting.left_over import why_open
 from ..fitting.problem import Problem, Unknowns
+from ..fitting.result import Fit
 from ..fitting.score import Score, score
 from ..fitting.search import TIES, inverse_information, silent
 from ..fitting.setup import base_system, first_guess, free_names

@@ -3,7 +3,7 @@
 from .compare import Comparison as Comparison
 from .compare import compare as compare
 from .estimates import Estimate as Estimate
-from .fit import Fit as Fit
 from .fit import fit as fit
 from .fit import predict_record as predict_record
+from .result import Fit as Fit
 from .score import Score as Score

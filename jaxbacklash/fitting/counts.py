@@ -7,13 +7,14 @@ standard errors say.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import Protocol
 
 from ..parameters import channel_unit
+from ..records import Record
 from ..signals import count_of
-
-if TYPE_CHECKING:
-    from .fit import Fit
+from ..system import System
+from .estimates import Estimate
 
 FEW = 10.0
 """Counts in the play below which intervals do not hold (independent records: with four to seven, errors of three to six standard
@@ -22,7 +23,22 @@ SCATTERED = 0.4
 """Noise, as a share of a count, that scatters what counting does: counting alone makes 0.29 of it."""
 
 
-def few_counts(fit: Fit) -> str:
+class Fitted(Protocol):
+    """A fit, as far as it says what was measured and which play was found; ``noise`` per record, of the observed channel."""
+
+    @property
+    def records(self) -> Sequence[Record]: ...
+    @property
+    def noise(self) -> Sequence[float]: ...
+    @property
+    def parameters(self) -> Mapping[str, Estimate]: ...
+    @property
+    def system(self) -> System: ...
+    @property
+    def translational(self) -> bool: ...
+
+
+def few_counts(fit: Fitted) -> str:
     """What is said of a fit whose play is only a few counts; nothing where it is more, or noise scatters the readings."""
     play = fit.parameters.get("backlash")
     if play is None or play.value is None or fit.system.observed == "T":

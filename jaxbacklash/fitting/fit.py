@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import equinox as eqx
@@ -24,8 +24,8 @@ from .hard import SHORTEST, SUSPECT, contact_samples, harder, most_play, travel_
 from .held import held as is_held
 from .left_over import EXPLAINED, quieter_elsewhere, settle_noise, why_open
 from .lengths import PANELS, longest_panel, score_window, shooting_window
-from .problem import Problem, Unknowns
 from .profile import with_profiles
+from .result import Fit
 from .score import Score, score
 from .search import Found, misfit, search, silent
 from .setup import base_system, first_guess, free_names, make_problem
@@ -34,55 +34,6 @@ from .windows import Layout, Windows, crossing_time, cut
 
 ABSOLUTE = ("force", "transmitted")
 """Kinds of record with a measured force, which need no inertia to tell a stiffness."""
-
-@dataclass(frozen=True)
-class Fit:
-    """A fitted model.
-
-    Attributes: ``system`` with the fitted values; ``parameters`` the free ones, by name; ``scores`` one per record;
-    ``heldout`` the score of a held-out record; ``noise`` and ``input_noise`` per record; ``covariance`` (q, q) in the order of
-    ``free``; ``agreeing``, ``tried`` starts that reached the best minimum; ``tied`` True when the windows were tied;
-    ``cost`` half the sum of squares; ``start`` the equation-error estimate it began from; ``seconds`` by stage;
-    ``noise_open`` per record, by channel, why its noise is an upper bound; without the channels whose noise is known.
-    """
-
-    system: System
-    free: tuple[str, ...]
-    parameters: dict[str, Estimate]
-    scores: tuple[Score, ...]
-    heldout: Score | None
-    records: tuple[Record, ...]
-    noise: tuple[float, ...]
-    input_noise: tuple[float, ...]
-    covariance: np.ndarray
-    agreeing: int
-    tried: int
-    tied: bool
-    cost: float
-    steps: int
-    start: Start | None
-    model: str
-    per_inertia: bool
-    translational: bool
-    seconds: dict[str, float] = field(default_factory=dict)
-    problem: Problem | None = field(default=None, repr=False)
-    unknowns: Unknowns | None = field(default=None, repr=False)
-    noise_open: tuple[dict[str, str], ...] = ()
-
-    @property
-    def score(self) -> Score:
-        """The score of the first record."""
-        return self.scores[0]
-
-    @property
-    def adequate(self) -> bool:
-        """True when what the model leaves is noise: the median window within a tenth of it, all windows within three tenths."""
-        return all(s.median < 1.1 and s.rms < 1.3 for s in self.scores)
-
-    def __str__(self) -> str:
-        from .print_fit import text
-
-        return text(self)
 
 
 def fit(

@@ -11,7 +11,7 @@ from ..causes import Cause
 from ..cross_check import cross_check as skeletons_beside
 from ..fitting import Comparison, Estimate, Fit, Score
 from ..fitting.equation_error import Start
-from ..fitting.print_fit import doubt, verdict_text
+from ..fitting.result import doubt, verdict_text
 from ..parameters import specs, unit_text, values
 from ..records import Record
 

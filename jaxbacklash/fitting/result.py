@@ -1,22 +1,24 @@
-"""A fit report that a person can read."""
+"""What a fit found, and how a person reads it."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Protocol
+from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 
 from ..parameters import channel_unit
+from ..records import Record
+from ..system import System
 from .chance import beyond_chance
 from .counts import few_counts
+from .equation_error import Start
+from .estimates import Estimate
 from .lengths import SCORE_WINDOW
-
-if TYPE_CHECKING:
-    from .estimates import Estimate
-    from .fit import Fit
-    from .score import Score
-
+from .print_estimate import line
+from .problem import Problem, Unknowns
+from .score import Score
 
 DOUBTED = "only if the model is right: it is not, see below"
 """What stands beside every interval of a fit that misses its record by more than chance."""
@@ -33,30 +35,52 @@ class Named(Protocol):
     def undone(self) -> str: ...
 
 
-def number(value: float, stderr: float | None) -> str:
-    """A value with as many digits as its standard error allows (two of the error)."""
-    if not stderr or not np.isfinite(stderr):
-        return f"{value:.6g}"
-    decimals = int(1 - np.floor(np.log10(stderr)))
-    if decimals >= 0 and abs(value) < 1e7:
-        return f"{value:.{decimals}f}"
-    return f"{value:.6g}"
+@dataclass(frozen=True)
+class Fit:
+    """A fitted model.
 
+    Attributes: ``system`` with the fitted values; ``parameters`` the free ones, by name; ``scores`` one per record;
+    ``heldout`` the score of a held-out record; ``noise`` and ``input_noise`` per record; ``covariance`` (q, q) in the order of
+    ``free``; ``agreeing``, ``tried`` starts that reached the best minimum; ``tied`` True when the windows were tied;
+    ``cost`` half the sum of squares; ``start`` the equation-error estimate it began from; ``seconds`` by stage;
+    ``noise_open`` per record, by channel, why its noise is an upper bound; without the channels whose noise is known.
+    """
 
-def line(estimate: Estimate, note: str = "") -> str:
-    """One parameter in words: value, error, interval, or why there is none; a ``note`` stands beside an interval."""
-    name = f"  {estimate.label:<24}"
-    if estimate.value is None:
-        return f"{name} {estimate.verdict}: {estimate.why}"
-    value = number(estimate.value, estimate.stderr)
-    unit = "" if estimate.unit == "1" else estimate.unit
-    if estimate.stderr is None:
-        return f"{name} {value} {unit}"
-    share = f"{100 * estimate.stderr / abs(estimate.value):.2g} %" if estimate.value else ""
-    text = f"{name} {value} +- {estimate.stderr:.2g} {unit}" + (f" ({share})" if share else "")
-    if estimate.unit == "rad" and abs(estimate.value) < 1.0:
-        text += f" = {np.degrees(estimate.value):.4g} deg"
-    return f"{text}  [{note}]" if note else text
+    system: System
+    free: tuple[str, ...]
+    parameters: dict[str, Estimate]
+    scores: tuple[Score, ...]
+    heldout: Score | None
+    records: tuple[Record, ...]
+    noise: tuple[float, ...]
+    input_noise: tuple[float, ...]
+    covariance: np.ndarray
+    agreeing: int
+    tried: int
+    tied: bool
+    cost: float
+    steps: int
+    start: Start | None
+    model: str
+    per_inertia: bool
+    translational: bool
+    seconds: dict[str, float] = field(default_factory=dict)
+    problem: Problem | None = field(default=None, repr=False)
+    unknowns: Unknowns | None = field(default=None, repr=False)
+    noise_open: tuple[dict[str, str], ...] = ()
+
+    @property
+    def score(self) -> Score:
+        """The score of the first record."""
+        return self.scores[0]
+
+    @property
+    def adequate(self) -> bool:
+        """True when what the model leaves is noise: the median window within a tenth of it, all windows within three tenths."""
+        return all(s.median < 1.1 and s.rms < 1.3 for s in self.scores)
+
+    def __str__(self) -> str:
+        return text(self)
 
 
 def doubt(fit: Fit) -> str:
