@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..skeletons import Skeletons
-from ..skeletons.print_skeleton import verdict
+from ..skeletons.result import verdict
 from .result import SCHEMA, about_record, finite
 
 
