@@ -9,7 +9,7 @@ import numpy as np
 
 from ..records import MeasuredSeries
 from ..timeseries import ChaosReport
-from ..timeseries.print_report import drift_words, why_wide
+from ..timeseries.result import drift_words, why_wide
 from .result import SCHEMA, finite
 
 

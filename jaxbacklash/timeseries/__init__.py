@@ -1,6 +1,5 @@
 """Chaos from a measured series; arrays in, arrays out, knows no system."""
 
-from .analyse import ChaosReport as ChaosReport
 from .analyse import chaos as chaos
 from .correlation import Correlation as Correlation
 from .correlation import correlation as correlation
@@ -19,6 +18,7 @@ from .mutual_information import mutual_information as mutual_information
 from .noise_reduction import Cleaned as Cleaned
 from .noise_reduction import projective as projective
 from .noise_reduction import simple as simple
+from .result import ChaosReport as ChaosReport
 from .scales import mean_period as mean_period
 from .stretching import Stretching as Stretching
 from .stretching import stretching as stretching

@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
 from ..errors import BadInput
-from .correlation import Correlation, correlation
-from .dimension import Dimension, embedding_dimension
-from .drift import Drift, find_drift
-from .driven import Driven, driven_exponent
+from .correlation import correlation
+from .dimension import embedding_dimension
+from .drift import find_drift
+from .driven import driven_exponent
 from .exponent import Exponent, largest_exponent
-from .mutual_information import Delay, choose_delay
+from .mutual_information import choose_delay
 from .noise_reduction import Cleaned, projective, simple
-from .print_report import text
+from .result import ChaosReport
 from .scales import mean_period
 from .stationarity import kept_company
 from .stretching import Stretching, stretching
-from .surrogates import KINDS, SurrogateTest, surrogate_test
+from .surrogates import KINDS, surrogate_test
 from .verdict import STEADY, Verdict, judge, judge_driven
-from .zero_one import ZeroOne, zero_one
+from .zero_one import zero_one
 
 SHORTEST = 500
 LONGEST = 50000  # of a longer series every few samples are taken where it is sampled finely, and then its middle
@@ -35,68 +34,6 @@ SWING_SHARE = 0.35  # of a swing that the noise reduction's vectors span
 COARSE = 40.0  # samples a swing below which the fifteen coordinates that noise is taken off with span more than that share
 
 Tell = Callable[[str, float], None]
-
-
-@dataclass(frozen=True, eq=False)
-class ChaosReport:
-    """What one series says. Prints itself.
-
-    Exponents are per sample inside ``exponent`` and ``raw_exponent``; the properties give them per second. ``series`` is the
-    standardised series, ``cleaned`` its noise reduction (of the middle `CLEANED_SAMPLES` of a long series), which counts only
-    where ``uses_cleaned``. ``drive_period`` [s] is None, with ``why_no_period``, for a record without a drive that repeats.
-    ``shortened`` says what was used of a long series, None where all was; ``dt`` is the time between samples used.
-    ``drift`` is what was found before all else; where it was ``removed``, ``series`` is what is left.
-    ``driven`` is the growth under the measured drive, None without one; where ``conditional``, verdict and exponent are its.
-    """
-
-    series: np.ndarray
-    dt: float
-    mean: float
-    deviation: float
-    period: float
-    delay: Delay
-    theiler: int
-    raw_dimension: Dimension
-    cleaned_dimension: Dimension | None
-    cleaned: Cleaned | None
-    simple: Cleaned | None
-    uses_cleaned: bool
-    raw_exponent: Exponent | None
-    exponent: Exponent | None
-    curve: Stretching
-    correlation: Correlation
-    raw_correlation: Correlation
-    surrogates: SurrogateTest
-    walk: ZeroOne
-    verdict: Verdict
-    why_no_number: str | None
-    drive_period: float | None
-    why_no_period: str | None
-    driven: Driven | None
-    conditional: bool
-    seed: int
-    drift: Drift
-    shortened: str | None
-
-    @property
-    def lyapunov(self) -> float | None:
-        """Largest exponent [1/s], None where there is none to give (see ``why_no_number``)."""
-        if self.why_no_number:
-            return None
-        if self.conditional:
-            return None if self.driven is None or self.driven.value is None else self.driven.value / self.dt
-        return None if self.exponent is None else self.exponent.value / self.dt
-
-    @property
-    def interval(self) -> tuple[float, float] | None:
-        """95 % interval of the largest exponent [1/s]."""
-        found = self.driven if self.conditional else self.exponent
-        if self.lyapunov is None or found is None or found.interval is None:
-            return None
-        return found.interval[0] / self.dt, found.interval[1] / self.dt
-
-    def __str__(self) -> str:
-        return text(self)
 
 
 def chaos(

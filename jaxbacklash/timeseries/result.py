@@ -1,12 +1,85 @@
-"""A chaos report as a person reads it."""
+"""What a measured series says of chaos, and how a person reads it."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
 
-if TYPE_CHECKING:
-    from .analyse import ChaosReport
+import numpy as np
+
+from .correlation import Correlation
+from .dimension import Dimension
+from .drift import Drift
+from .driven import Driven
+from .exponent import Exponent
+from .mutual_information import Delay
+from .noise_reduction import Cleaned
+from .stretching import Stretching
+from .surrogates import SurrogateTest
+from .verdict import Verdict
+from .zero_one import ZeroOne
+
+
+@dataclass(frozen=True, eq=False)
+class ChaosReport:
+    """What one series says. Prints itself.
+
+    Exponents are per sample inside ``exponent`` and ``raw_exponent``; the properties give them per second. ``series`` is the
+    standardised series, ``cleaned`` its noise reduction (of the middle of a long series, see `clean_series`), which counts only
+    where ``uses_cleaned``. ``drive_period`` [s] is None, with ``why_no_period``, for a record without a drive that repeats.
+    ``shortened`` says what was used of a long series, None where all was; ``dt`` is the time between samples used.
+    ``drift`` is what was found before all else; where it was ``removed``, ``series`` is what is left.
+    ``driven`` is the growth under the measured drive, None without one; where ``conditional``, verdict and exponent are its.
+    """
+
+    series: np.ndarray
+    dt: float
+    mean: float
+    deviation: float
+    period: float
+    delay: Delay
+    theiler: int
+    raw_dimension: Dimension
+    cleaned_dimension: Dimension | None
+    cleaned: Cleaned | None
+    simple: Cleaned | None
+    uses_cleaned: bool
+    raw_exponent: Exponent | None
+    exponent: Exponent | None
+    curve: Stretching
+    correlation: Correlation
+    raw_correlation: Correlation
+    surrogates: SurrogateTest
+    walk: ZeroOne
+    verdict: Verdict
+    why_no_number: str | None
+    drive_period: float | None
+    why_no_period: str | None
+    driven: Driven | None
+    conditional: bool
+    seed: int
+    drift: Drift
+    shortened: str | None
+
+    @property
+    def lyapunov(self) -> float | None:
+        """Largest exponent [1/s], None where there is none to give (see ``why_no_number``)."""
+        if self.why_no_number:
+            return None
+        if self.conditional:
+            return None if self.driven is None or self.driven.value is None else self.driven.value / self.dt
+        return None if self.exponent is None else self.exponent.value / self.dt
+
+    @property
+    def interval(self) -> tuple[float, float] | None:
+        """95 % interval of the largest exponent [1/s]."""
+        found = self.driven if self.conditional else self.exponent
+        if self.lyapunov is None or found is None or found.interval is None:
+            return None
+        return found.interval[0] / self.dt, found.interval[1] / self.dt
+
+    def __str__(self) -> str:
+        return text(self)
 
 
 def text(found: ChaosReport) -> str:
