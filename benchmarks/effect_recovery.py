@@ -22,7 +22,8 @@ from typing import Any
 import numpy as np
 
 from jaxbacklash.criticism.evidence import standard_errors
-from jaxbacklash.criticism.refine import Refinement, refine
+from jaxbacklash.criticism.refine import refine
+from jaxbacklash.criticism.refinement import Refinement
 from jaxbacklash.criticism.workbench import Trial, Workbench, strengths
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.fitting.windows import observed_noise

@@ -7,10 +7,10 @@ from .latent import missing_torque_of as missing_torque_of
 from .ranking import Ranked as Ranked
 from .ranking import Ranking as Ranking
 from .ranking import rank_effects as rank_effects
-from .refine import Refinement as Refinement
-from .refine import Stage as Stage
 from .refine import refine as refine
+from .refinement import Refinement as Refinement
 from .residuals import Findings as Findings
 from .residuals import where_it_fails as where_it_fails
+from .steps import Stage as Stage
 from .surface import Surface as Surface
 from .surface import explain_torque as explain_torque

@@ -11,7 +11,8 @@ from ..fitting.result import Fit, causes_text
 from ..fitting.search import silent
 from ..records import Record
 from ..system import System
-from .refine import Refinement, Stage
+from .refinement import Refinement
+from .steps import Stage
 from .verdict import Verdict
 
 

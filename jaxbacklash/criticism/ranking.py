@@ -18,8 +18,8 @@ from ..precision import require_double_precision
 from ..system import System
 from .candidates import Candidate, rank
 from .evidence import gain
-from .refine import Stage
 from .search import Search
+from .steps import Stage
 from .tried import WHOLE
 from .workbench import Workbench, correlation_length
 

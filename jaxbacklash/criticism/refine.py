@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from itertools import pairwise
 
 import equinox as eqx
 import numpy as np
 
-from ..causes import Cause
 from ..errors import BadInput
 from ..fitting.answers import check_answers
 from ..fitting.counts import few_counts
@@ -30,63 +29,18 @@ from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..system import System
 from .bounded import bounded
-from .candidates import Candidate
 from .either import either
-from .experiment import Experiment, separate
+from .experiment import separate
 from .foresight import Foresight
+from .refinement import Refinement
 from .search import Search
+from .steps import Stage
 from .unnamed import unnamed
-from .verdict import Verdict, judge_rest
+from .verdict import judge_rest
 from .workbench import Trial, Workbench, adequate, pruned
 
 SEPARATED = 2
 """Alternatives for which an experiment is looked for."""
-
-
-@dataclass(frozen=True)
-class Stage:
-    """One model kept: the effect ``added`` (None at first), those ``dropped`` with it, its `Fit`, the ``ranking`` of what was
-    still absent, and the ``evidence`` of the candidates that were really refitted, with their misfits before and after
-    (``refits``)."""
-
-    added: str | None
-    dropped: tuple[str, ...]
-    fit: Fit
-    ranking: tuple[Candidate, ...]
-    evidence: dict[str, float]
-    refits: dict[str, tuple[float, float]] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Refinement:
-    """What the loop found.
-
-    Attributes: ``stages``, the last one is the model kept; ``alternatives``, other sets of effects that the record cannot
-    tell apart from it; ``experiments`` that would separate the first of them; ``verdict``; ``seconds``; ``causes`` of misfit
-    that lie in the record, for which no law was looked for.
-    """
-
-    stages: tuple[Stage, ...]
-    alternatives: tuple[tuple[str, ...], ...]
-    verdict: Verdict
-    seconds: dict[str, float] = field(default_factory=dict)
-    experiments: tuple[Experiment, ...] = ()
-    causes: tuple[Cause, ...] = ()
-
-    @property
-    def fit(self) -> Fit:
-        """The model kept."""
-        return self.stages[-1].fit
-
-    @property
-    def effects(self) -> tuple[str, ...]:
-        """Names of what was missing."""
-        return tuple(sorted(self.fit.system.effects))
-
-    def __str__(self) -> str:
-        from .print_refinement import text
-
-        return text(self)
 
 
 def refine(

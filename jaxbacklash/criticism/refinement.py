@@ -1,21 +1,51 @@
-"""What the loop found, as a person reads it."""
+"""What the loop found, and how a person reads it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
+from ..causes import Cause
+from ..fitting import Fit
 from ..fitting.print_estimate import line
 from ..fitting.result import at_most, doubt
 from ..parameters import channel_unit
+from .experiment import Experiment
 from .ranking import of_stage, table
-
-if TYPE_CHECKING:
-    from ..fitting import Fit
-    from .refine import Refinement, Stage
+from .steps import Stage
+from .verdict import Verdict
 
 JOINT = {"backlash": "b", "stiffness": "k", "damping": "c"}
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """What the loop found.
+
+    Attributes: ``stages``, the last one is the model kept; ``alternatives``, other sets of effects that the record cannot
+    tell apart from it; ``experiments`` that would separate the first of them; ``verdict``; ``seconds``; ``causes`` of misfit
+    that lie in the record, for which no law was looked for.
+    """
+
+    stages: tuple[Stage, ...]
+    alternatives: tuple[tuple[str, ...], ...]
+    verdict: Verdict
+    seconds: dict[str, float] = field(default_factory=dict)
+    experiments: tuple[Experiment, ...] = ()
+    causes: tuple[Cause, ...] = ()
+
+    @property
+    def fit(self) -> Fit:
+        """The model kept."""
+        return self.stages[-1].fit
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Names of what was missing."""
+        return tuple(sorted(self.fit.system.effects))
+
+    def __str__(self) -> str:
+        return text(self)
 
 
 @dataclass(frozen=True)

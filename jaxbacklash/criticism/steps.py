@@ -1,10 +1,11 @@
-"""The path of a search, model by model."""
+"""The path of a search, model by model: as the search has each, and as a fit with scores and intervals."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from ..fitting import Fit
 from .candidates import Candidate
 from .workbench import Trial
 
@@ -19,6 +20,20 @@ class Step:
     dropped: tuple[str, ...]
     ranking: tuple[Candidate, ...]
     evidence: dict[str, float] = field(default_factory=dict)
+    refits: dict[str, tuple[float, float]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One model kept: the effect ``added`` (None at first), those ``dropped`` with it, its `Fit`, the ``ranking`` of what was
+    still absent, and the ``evidence`` of the candidates that were really refitted, with their misfits before and after
+    (``refits``)."""
+
+    added: str | None
+    dropped: tuple[str, ...]
+    fit: Fit
+    ranking: tuple[Candidate, ...]
+    evidence: dict[str, float]
     refits: dict[str, tuple[float, float]] = field(default_factory=dict)
 
 

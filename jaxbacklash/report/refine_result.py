@@ -8,8 +8,8 @@ import numpy as np
 
 from ..criticism import Findings, Refinement
 from ..criticism.experiment import Experiment
-from ..criticism.print_refinement import Moved, alternatives_sentence, steps
 from ..criticism.ranking import Ranking, of_stage
+from ..criticism.refinement import Moved, alternatives_sentence, steps
 from ..effects import Contact
 from ..errors import BadInput, NoAnswer
 from ..fitting import Fit
