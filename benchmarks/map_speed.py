@@ -31,10 +31,11 @@ import jaxbacklash as jb
 from benchmarks.peers import map_peers
 from jaxbacklash.dynamics.family import PaperCase
 from jaxbacklash.dynamics.follow import BLOCK, follow
-from jaxbacklash.dynamics.maps import request, run_map
+from jaxbacklash.dynamics.maps import run_map
 from jaxbacklash.dynamics.normal_form import normal_form
 from jaxbacklash.dynamics.periodicity import periodicity
 from jaxbacklash.dynamics.plan import CHUNK, Plan
+from jaxbacklash.dynamics.request import request
 from jaxbacklash.solvers import linear_pieces
 from jaxbacklash.solvers.exact_periods import begin
 from tests.independent import exponents

@@ -13,8 +13,9 @@ from jaxbacklash.dynamics.bifurcation import bifurcation, sweep
 from jaxbacklash.dynamics.family import NamedParameters, PaperCase
 from jaxbacklash.dynamics.follow import COURSE, LOCATED, follow
 from jaxbacklash.dynamics.located import PANELS, default_panels, fastest
-from jaxbacklash.dynamics.maps import request, run_map
+from jaxbacklash.dynamics.maps import run_map
 from jaxbacklash.dynamics.plan import Plan
+from jaxbacklash.dynamics.request import request
 from jaxbacklash.effects import ContactDamping, CoulombJoint, CubicStiffness, FlexibleLink, Gravity
 from jaxbacklash.errors import BadInput
 from jaxbacklash.excitation import Chirp, Harmonic, Sampled

@@ -14,7 +14,8 @@ pytest.importorskip("h5netcdf")
 
 from jaxbacklash.dynamics import tile_folder
 from jaxbacklash.dynamics.family import PaperCase
-from jaxbacklash.dynamics.maps import labelled_map, request
+from jaxbacklash.dynamics.maps import labelled_map
+from jaxbacklash.dynamics.request import request
 from jaxbacklash.dynamics.tiles import TileStore, place
 from jaxbacklash.errors import BadInput, NoAnswer
 

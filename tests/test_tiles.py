@@ -15,7 +15,8 @@ pytest.importorskip("xarray")
 
 from jaxbacklash.dynamics.family import PaperCase
 from jaxbacklash.dynamics.labels import write_netcdf
-from jaxbacklash.dynamics.maps import labelled_map, request, run_map
+from jaxbacklash.dynamics.maps import labelled_map, run_map
+from jaxbacklash.dynamics.request import request
 from jaxbacklash.dynamics.tiles import TileStore
 from jaxbacklash.errors import BadInput
 

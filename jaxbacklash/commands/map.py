@@ -16,7 +16,8 @@ from .. import __version__
 from ..dynamics.family import CASES, PaperCase
 from ..dynamics.follow import trace_exact
 from ..dynamics.labels import need_h5netcdf, write_netcdf
-from ..dynamics.maps import Request, labelled_map, request
+from ..dynamics.maps import labelled_map
+from ..dynamics.request import Request, request
 from ..dynamics.tile_folder import claim, remove, used_alone
 from ..dynamics.tiles import need_zarr
 from ..errors import BadInput

@@ -11,8 +11,8 @@ from .lyapunov import Exponents as Exponents
 from .lyapunov import field_spectrum as field_spectrum
 from .lyapunov import lyapunov_spectrum as lyapunov_spectrum
 from .maps import paper_map as paper_map
-from .maps import request as request
 from .maps import run_map as run_map
+from .request import request as request
 from .sections import Section as Section
 from .sections import poincare as poincare
 from .sections import stroboscopic as stroboscopic

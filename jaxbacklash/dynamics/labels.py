@@ -12,8 +12,8 @@ import numpy as np
 
 from ..errors import BadInput
 from ..whole_file import whole_file
-from .maps import KEPT, VARIABLES, Request, package_version
 from .periodicity import CHAOTIC, UNRESOLVED
+from .request import KEPT, VARIABLES, Request, package_version
 from .tiles import MemoryTiles, TileStore, shape_of
 
 ROOM = 2**20

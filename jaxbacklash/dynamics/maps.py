@@ -6,119 +6,25 @@ store the tiles go to disk as they are done, see `tiles`.
 
 from __future__ import annotations
 
-import hashlib
-import json
 import os
-import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import dataclass
-from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..errors import BadInput
-from .family import Family, PaperCase
+from .family import PaperCase
 from .follow import follow
+from .labels import Labelled, dataset, labelled
 from .periodicity import periodicity, sizes
-from .plan import Plan
-
-if TYPE_CHECKING:
-    from .labels import Labelled
+from .request import VARIABLES, Request, request
+from .tiles import MemoryTiles, TileStore
 
 Array = Any
 Progress = Callable[[str, float], None]
-
-LANES = 1024
-"""Cells in a tile: their numbers stay in a core's own cache."""
-VARIABLES = {"lyapunov": "f8", "lyapunov_stderr": "f8", "period": "i4", "unresolved": "i1", "poincare": "f8"}
-"""What a map holds, and as what; `KEPT` has a leading dimension ``sample``."""
-KEPT = ("poincare",)
-
-
-def package_version() -> str:
-    """The version of this package, which stands above this layer but is loaded whenever a part of it is."""
-    return str(sys.modules[__name__.partition(".")[0]].__version__)
-
-
-@dataclass(frozen=True)
-class Request:
-    """Everything that decides a map's numbers: what, over which axes, how long, from where, in which tiles."""
-
-    family: Family
-    axes: tuple[tuple[str, tuple[float, ...]], ...]
-    plan: Plan
-    start: tuple[float, float]
-    tile: tuple[int, ...]
-    exact: bool | None = None
-    period: float | None = None
-    panels: int | None = None
-
-    @property
-    def names(self) -> list[str]:
-        return [name for name, _ in self.axes]
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        return tuple(len(values) for _, values in self.axes)
-
-    @property
-    def cells(self) -> int:
-        return int(np.prod(self.shape))
-
-    def tiles(self) -> list[tuple[slice, ...]]:
-        """The map cut into boxes of the tile's shape, smaller at its far sides."""
-        cuts = [
-            [slice(i, min(i + step, size)) for i in range(0, size, step)] for size, step in zip(self.shape, self.tile)
-        ]
-        return [tuple(box) for box in product(*cuts)]
-
-    def fingerprint(self) -> str:
-        """A name for this map's numbers: two requests share it when they give the same bits."""
-        told = {
-            "family": self.family.identity(), "axes": self.axes, "start": self.start, "tile": self.tile, "exact": self.exact,
-            "plan": [self.plan.periods, self.plan.skip, self.plan.samples], "version": package_version(),
-            "period": self.period, "panels": self.panels,
-        }  # fmt: skip
-        return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()
-
-
-def request(
-    family: Family, axes: Mapping[str, Any], *, periods: int = 400, skip: int = 100, samples: int = 32,
-    start: tuple[float, float] = (0.0, 0.0), exact: bool | None = None, period: float | None = None,
-    panels: int | None = None, lanes: int = LANES,
-) -> Request:  # fmt: skip
-    """A checked request for a map over one or more axes, each the name of a parameter with its values, in order of dimension.
-
-    ``exact``, ``period`` [s] and ``panels`` are those of `follow`: a drive without a period of its own, a chirp or a measured
-    base motion, needs ``period``, the time between two samples.
-
-    Raises
-    ------
-    BadInput
-        An unknown parameter, an axis without finite values, or a plan that cannot be followed.
-    """
-    if not axes:
-        raise BadInput("a map needs at least one axis")
-    checked = []
-    for name, values in axes.items():
-        family.unit(name)
-        numbers = np.asarray(values, dtype=float)
-        if numbers.ndim != 1 or not numbers.size or not np.all(np.isfinite(numbers)):
-            raise BadInput(f"axis {name}: wanted a list of finite numbers")
-        checked.append((name, tuple(float(v) for v in numbers)))
-    shape, room = [len(v) for _, v in checked], lanes
-    tile: list[int] = []
-    for size in reversed(shape):
-        tile.insert(0, min(size, max(1, room)))
-        room //= tile[0]
-    if period is not None and not 0.0 < period < np.inf:
-        raise BadInput(f"period {period}: wanted a time above 0")
-    begun, plan = (float(start[0]), float(start[1])), Plan(periods, skip, samples)
-    return Request(family, tuple(checked), plan, begun, tuple(tile), exact, period, panels)
 
 
 def compute_tile(wanted: Request, box: tuple[slice, ...]) -> tuple[dict[str, np.ndarray], str]:
@@ -166,8 +72,6 @@ def run_map(
     BadInput
         xarray (or zarr, for a store) is missing, or the store holds another map.
     """
-    from .labels import dataset
-
     return dataset(labelled_map(wanted, store=store, client=client, workers=workers, progress=progress))
 
 
@@ -176,9 +80,6 @@ def labelled_map(
     progress: Progress | None = None,
 ) -> Labelled:  # fmt: skip
     """`run_map` without xarray: arrays with their names and units."""
-    from .labels import labelled
-    from .tiles import MemoryTiles, TileStore
-
     kept = MemoryTiles(wanted) if store is None else TileStore(Path(store), wanted)
     missing = [k for k, _ in enumerate(wanted.tiles()) if not kept.has(k)]
     tell = Clock(progress, len(wanted.tiles()), len(missing))

@@ -30,7 +30,7 @@ def claim(path: Path, fingerprint: str) -> None:
     Parameters
     ----------
     path : the folder
-    fingerprint : the map's, see `jaxbacklash.dynamics.maps.Request.fingerprint`
+    fingerprint : the map's, see `jaxbacklash.dynamics.request.Request.fingerprint`
 
     Raises
     ------

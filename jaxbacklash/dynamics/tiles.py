@@ -17,7 +17,7 @@ import numpy as np
 
 from ..errors import BadInput, NoAnswer
 from ..whole_file import write_whole
-from .maps import KEPT, VARIABLES, Request
+from .request import KEPT, VARIABLES, Request
 from .tile_folder import ARRAYS, RECORDS, claim
 
 
