@@ -23,7 +23,6 @@ from .periodicity import periodicity, sizes
 from .request import VARIABLES, Request, request
 from .tiles import MemoryTiles, TileStore
 
-Array = Any
 Progress = Callable[[str, float], None]
 
 
