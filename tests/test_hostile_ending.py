@@ -1,6 +1,7 @@
 """How a command ends where the surroundings fail it: streams, disk, memory, and errors that nobody foresaw."""
 
 import errno
+import math
 import os
 import subprocess
 import sys
@@ -103,6 +104,12 @@ def test_streams_that_are_closed_before_it_begins(tmp_path, closed):
     run = within(closed, "look", "m.toml", cwd=tmp_path)
     assert run.returncode == 2
     assert (tmp_path / "m.toml").read_text() == "[model]\n"
+
+
+def test_an_answer_that_nobody_can_read_is_no_error(tmp_path):
+    (tmp_path / "r.csv").write_text("t,z\n" + "".join(f"{0.01 * i},{math.sin(0.3 * i)}\n" for i in range(200)))
+    run = within("exec >&-", "look", "r.csv", "--json", cwd=tmp_path)
+    assert (run.returncode, run.stderr) == (0, "")
 
 
 @pytest.mark.slow

@@ -128,7 +128,7 @@ def missing_torque(fit: Fit, *, hold: bool = False) -> Latent:
     Raises
     ------
     NoAnswer
-        The smoother does not reach a finite misfit.
+        The smoother does not reach a finite misfit, or the model's own parameters leave the torque open.
     """
     if fit.problem is None or fit.unknowns is None:
         return missing_torque_of(
@@ -170,6 +170,11 @@ def _smooth(
     smoother, point, found, converged = _settled(smoother, start)
     scale = float(smoother.unit)
     spread, loose, path, linear = finish(smoother, point, found.best[0].astype(int), found.best[1])
+    if not np.all(np.isfinite(np.asarray(spread)[np.asarray(smoother.present) > 0.0])):
+        raise NoAnswer(
+            "the missing torque could not be found: effects of the model stand in for one another, so that nothing tells their "
+            "strengths; leave some of them out"
+        )
     names = list(values(system))
     vector = np.asarray(problem.base) + np.asarray(problem.directions) @ np.asarray(point.unknowns.theta)
     here = with_values(system, dict(zip(names, vector)))
