@@ -41,6 +41,11 @@ def explained(trial: Trial) -> bool:
     return trial.misfit < NOISE_FLOOR
 
 
+def noise_too_large(trial: Trial) -> bool:
+    """Whether a model leaves less than the noise was taken for, which cannot be right then: corners were taken for noise."""
+    return trial.tied and trial.misfit < 0.97
+
+
 def excess(trial: Trial) -> float:
     """By how much the reduced chi-square exceeds that of noise."""
     return max(trial.misfit**2 - 1.0, 0.0)

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from .candidates import may_join, rank
-from .evidence import demanded, explained, gain
+from .candidates import Candidate, may_join, rank
+from .evidence import SURE, demanded, explained, gain
 from .steps import Step
 from .tried import follows
 from .workbench import Trial
@@ -67,6 +67,33 @@ def _apart(search: Search) -> Iterator[None]:
         yield
     finally:
         search.apart = False
+
+
+def judged_loose(
+    search: Search, current: Trial, tried: dict[str, Trial], ranking: tuple[Candidate, ...]
+) -> tuple[Trial, dict[str, Trial]]:
+    """The model of a stage and its candidates, with free windows where one trajectory has stuck on the way to a clear gain.
+
+    Parameters
+    ----------
+    current, tried : the model, and those with another effect by its name
+    ranking : of what the model lacks
+    """
+    if not current.tied or search.runs_through(current):
+        return current, tried
+    promised = {c.name for c in ranking if c.gain > SURE * demanded(search.bench)}
+    parted = any(not t.tied and not search.ruled_out(current, t.names) for t in tried.values())
+    lost = parted or any(t.cost > current.cost and n in promised for n, t in tried.items() if t.tied)
+    # Free windows have starts to choose, which one trajectory has not: what they rule out is no match for it.
+    tried = {n: t for n, t in tried.items() if t.tied}
+    if not lost:
+        return current, tried
+    # The stage is judged on free windows, unless they show nothing, or what no trajectory follows, and another candidate went
+    # all the way.
+    loose = search.loosened(current)
+    others = search.attempts(loose, ranking)
+    shown = search.helps(loose, others) and not soaked_up(search, current, tried, loose, others)
+    return (loose, others) if shown or not search.helps(current, tried) else (current, tried)
 
 
 def soaked_up(search: Search, current: Trial, tried: dict[str, Trial], loose: Trial, others: dict[str, Trial]) -> bool:

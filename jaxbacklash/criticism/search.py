@@ -16,7 +16,6 @@ from .evidence import (
     MOST,
     MUCH,
     NOISE_FLOOR,
-    SURE,
     acts_anyway,
     at_a_bound,
     claim,
@@ -27,12 +26,13 @@ from .evidence import (
     leaves_a_rest,
     led_on,
     measures_only,
+    noise_too_large,
     shapeless,
     significance,
     worth,
 )
 from .joining import one_piece
-from .loose import by_free_windows, soaked_up, without_soaking
+from .loose import by_free_windows, judged_loose, without_soaking
 from .memories import Member, families, may_replace, members
 from .preference import AHEAD, advantage, lead, simplest
 from .recall import recalled
@@ -81,8 +81,7 @@ class Search(Unseen):
         steps = self.path = [Step(self.base(), None, (), ())]
         steps = self.path = self.forward(steps[0].trial, steps, MUCH)
         final = steps[-1].trial
-        if final.tied and final.misfit < 0.97:
-            # A noise estimate cannot be right that exceeds what a model leaves: corners were taken for noise.
+        if noise_too_large(final):
             self.bench.quieter(final.misfit)
             self.known.clear()
             return self.run()
@@ -315,20 +314,7 @@ class Search(Unseen):
                 self.likely(current)
             ranking = tuple(rank(self.bench, current, may_join(self.bench, current)))
             tried = self.attempts(current, ranking)
-            promised = {c.name for c in ranking if c.gain > SURE * demanded(self.bench)}
-            parted = any(not t.tied and not self.ruled_out(current, t.names) for t in tried.values())
-            lost = parted or any(t.cost > current.cost and n in promised for n, t in tried.items() if t.tied)
-            if current.tied and not self.runs_through(current):
-                # Free windows have starts to choose, which one trajectory has not: what they rule out is no match for it.
-                tried = {n: t for n, t in tried.items() if t.tied}
-                if lost:
-                    # A trajectory in one piece has stuck on the way to a clear gain: this stage is judged on free windows, unless
-                    # they show nothing, or what no trajectory follows, and another candidate went all the way.
-                    loose = self.loosened(current)
-                    others = self.attempts(loose, ranking)
-                    shown = self.helps(loose, others) and not soaked_up(self, current, tried, loose, others)
-                    if shown or not self.helps(current, tried):
-                        current, tried = loose, others
+            current, tried = judged_loose(self, current, tried, ranking)
             # Two of a family may each look better from the other, one with free windows and one without: none is kept twice.
             kept = {s.trial.names for s in steps}
             tried = self.finished(current, {n: t for n, t in tried.items() if t.names not in kept})
