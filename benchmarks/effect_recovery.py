@@ -131,6 +131,13 @@ def missed(case: Case, found: Refinement, trial: Trial) -> float | None:
     return 2.0 * (found.fit.cost - trial.cost) + math.log(case.record.samples) * (len(found.fit.free) - len(trial.free))
 
 
+def is_right(case: Case, found: Refinement) -> bool:
+    """Whether exactly what hides was named, or what is outside the catalogue was admitted to be unknown."""
+    if set(case.hidden) & set(OUTSIDE_CATALOGUE):
+        return not found.verdict.complete
+    return family(found.effects) == family(case.hidden)
+
+
 def judge(case: Case, found: Refinement, seconds: float) -> dict[str, Any]:
     """What one record says about the method."""
     truth = {n: getattr(case.rig, n) for n in JOINT}
@@ -138,13 +145,13 @@ def judge(case: Case, found: Refinement, seconds: float) -> dict[str, Any]:
     inside = {name: bool(ci is not None and ci[0] <= truth[name] <= ci[1]) for name, ci in intervals.items()}
     unknown = bool(set(case.hidden) & set(OUTSIDE_CATALOGUE))
     exact = family(found.effects) == family(case.hidden)
-    right = not found.verdict.complete if unknown else exact
     last = found.fit
     trial = true_model(case) if case.hidden and not unknown else None
     sure = trial is None or all(strength > SURE for strength in hidden_strengths(case, trial).values())
     return {
         "number": case.number, "hidden": list(case.hidden), "kind": case.kind, "found": list(found.effects),
-        "alternatives": [list(a) for a in found.alternatives], "verdict": found.verdict.word, "right": right,
+        "alternatives": [list(a) for a in found.alternatives], "verdict": found.verdict.word,
+        "right": is_right(case, found),
         "here": found.verdict.here, "median": last.score.median, "held": None if last.heldout is None else last.heldout.median,
         "rms": [s.fit.score.rms for s in found.stages], "inside": inside, "intervals": intervals, "seconds": seconds,
         "joint": {n: found.fit.parameters[n].value for n in truth}, "truth": truth,
