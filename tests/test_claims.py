@@ -72,7 +72,7 @@ def test_a_strength_at_the_end_of_its_range_explains_nothing():
     def verdict(g):
         names, system = frozenset({"sensor_gain"}), joint.with_effects(jb.SensorGain(g))
         final = SimpleNamespace(system=system, names=names, free=("sensor_gain.g",), misfit=1.0, cost=5e3)
-        score = SimpleNamespace(rms=1.0, median=1.0)
+        score = SimpleNamespace(rms=1.0, median=1.0, nrmse=0.01, observed="z")
         return at_a_limit(final, "sensor_gain"), judge_rest(final, [SimpleNamespace(score=score, heldout=None)] * 2)
 
     for g, limit in ((2.0, True), (0.5, True), (1.0, False), (1.9, False)):

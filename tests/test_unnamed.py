@@ -156,7 +156,8 @@ def test_the_verdict_says_what_goes_with_the_rest(names):
         names=frozenset(names), free=(), system=joint.with_effects(*(jb.catalogue()[n]() for n in names)), misfit=1.005,
         cost=1e4 * 1.005**2,
     )  # fmt: skip
-    fits = [SimpleNamespace(score=SimpleNamespace(rms=rms, median=1.0), heldout=None) for rms in (1.2, 1.0)]
+    scores = [SimpleNamespace(rms=rms, median=1.0, nrmse=0.01, observed="z") for rms in (1.2, 1.0)]
+    fits = [SimpleNamespace(score=score, heldout=None) for score in scores]
     assert judge_rest(final, fits).complete
     verdict = judge_rest(final, fits, Unnamed("deflection and speed in contact", 530.4))
     assert verdict.word == "incomplete"

@@ -18,9 +18,13 @@ def model(*names, misfit, freedom):
     return SimpleNamespace(names=frozenset(names), free=(), system=system, misfit=misfit, cost=0.5 * freedom * misfit**2)
 
 
+def score(rms, median):
+    return SimpleNamespace(rms=rms, median=median, nrmse=1e-3 * rms, observed="z")
+
+
 def fit(rms, median, held=None, held_median=None):
-    heldout = None if held is None else SimpleNamespace(rms=held, median=held_median or held)
-    return SimpleNamespace(score=SimpleNamespace(rms=rms, median=median), heldout=heldout)
+    heldout = None if held is None else score(held, held_median or held)
+    return SimpleNamespace(score=score(rms, median), heldout=heldout)
 
 
 @pytest.mark.parametrize("names", [(), ("gravity",)])
@@ -50,7 +54,7 @@ def test_a_long_record_tells_a_little_more_than_noise_from_noise(freedom, comple
         (17.0, 34.0, 20.0, None),
         (1.0, 34.0, 1.02, None),
         (1.0, 34.0, 3.0, "still missed, by 3 times"),
-        (1.0, 1.5, 3.0, "rises from 1.5 to 3 times the noise: what was added stands in for something else"),
+        (1.0, 1.5, 3.0, "rises from 1.5 to 3 times the noise, 0.3 % of the motion: what was added stands in for something else"),
         (1.0, None, None, None),
     ],
 )
@@ -70,7 +74,7 @@ def test_a_few_windows_of_a_held_out_record_do_not_outweigh_all_others(median, c
     fits = [fit(5.0, 4.0, 1.6, 1.4), fit(1.0, 1.0, 5.6, median)]
     verdict = judge_rest(model("dahl", misfit=1.0, freedom=20_000), fits)
     assert verdict.complete == complete
-    few = "a few windows are missed (its error is 5.6 times the noise, in the median window 0.99)"
+    few = "a few windows are missed (its error is 5.6 times the noise, 0.56 % of the motion, in the median window 0.99)"
     assert (few in verdict.text) == complete
     assert ("stands in" in verdict.text) != complete
 

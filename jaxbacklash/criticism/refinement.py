@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 from ..causes import Cause
-from ..fitting import Fit
+from ..fitting import Fit, Score, measures, percent
 from ..fitting.print_estimate import line
 from ..fitting.result import at_most, doubt
 from ..parameters import channel_unit
@@ -117,14 +117,20 @@ def _stages(stages: tuple[Stage, ...]) -> list[str]:
     names = [_name(stage) for stage in stages]
     wide = max(map(len, names)) + 2
     held = any(stage.fit.heldout is not None for stage in stages)
-    head = f"  {'stage':<{wide}} {'rms/noise':>10}" + (f" {'held out':>10}" if held else "")
+    of = f"of {measures(stages[0].fit.score.observed)}"
+    head = f"  {'stage':<{wide}} {'rms/noise':>10} {of:>10}" + (f" {'held out':>10} {of:>10}" if held else "")
     lines = [head + "   what play b, stiffness k and damping c did"]
     for name, stage, old in zip(names, stages, (None, *stages[:-1])):
-        row = f"  {name:<{wide}} {stage.fit.score.rms:>10.3g}"
+        row = f"  {name:<{wide}} {_errors(stage.fit.score)}"
         if held:
-            row += f" {stage.fit.heldout.rms:>10.3g}" if stage.fit.heldout is not None else f" {'':>10}"
+            row += f" {_errors(stage.fit.heldout)}"
         lines.append(row + ("" if old is None else "   " + _moves(moved(old.fit, stage.fit))))
     return lines
+
+
+def _errors(score: Score | None) -> str:
+    """Both errors of a model in two columns, empty where it was not scored."""
+    return f"{score.rms:>10.3g} {percent(score.nrmse):>10}" if score is not None else f"{'':>21}"
 
 
 def _name(stage: Stage) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..fitting import Fit
+from ..fitting import Fit, error_in_words
 from .failures import Dependence, depends
 from .latent import Latent, missing_torque
 from .surface import Surface, explain_torque
@@ -92,7 +92,7 @@ def where_it_fails(fit: Fit, latent: Latent | None = None, surface: Surface | No
 
 
 def _numbers(fit: Fit, latent: Latent) -> dict[str, Any]:
-    return {"rms": fit.score.rms, "bound": 2.0 * float(np.median(latent.stderr)), "unit": latent.unit}
+    return {"error": error_in_words(fit.score), "bound": 2.0 * float(np.median(latent.stderr)), "unit": latent.unit}
 
 
 def _misfit(fit: Fit, latent: Latent) -> np.ndarray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..fitting import Fit
+from ..fitting import Fit, error_in_words
 from .evidence import at_a_limit, most_of_noise
 from .unnamed import Unnamed
 from .workbench import Trial
@@ -42,12 +42,12 @@ def judge_rest(final: Trial, fits: list[Fit], beyond: Unnamed | None = None) -> 
     added = f" with {', '.join(sorted(final.names))} added" if final.names else ""
     if beyond is not None and final.misfit < most:
         text = (
-            f"Incomplete: the prediction error is {last.score.rms:.3g} times the noise{added}, but what is left is not noise "
+            f"Incomplete: the prediction error is {error_in_words(last.score)}{added}, but what is left is not noise "
             f"alone: a torque that goes with {beyond.words} would clearly lower it (evidence {beyond.fall:.0f}), and no effect "
             "in the catalogue exerts that."
         )
     else:
-        text = f"Incomplete: the misfit is still {last.score.rms:.3g} times the noise{added}"
+        text = f"Incomplete: the misfit is still {error_in_words(last.score)}{added}"
         if most < final.misfit < LITTLE_MORE:
             text += f" ({final.misfit:.3f} over the whole record, of which noise explains {most:.3f} at most)"
         text += ", and no effect in the catalogue explains the rest."
@@ -61,7 +61,7 @@ def _what_explains(final: Trial, first: Fit, last: Fit, against: str) -> str:
     left = "what is left is noise"
     if last.score.rms > LITTLE_MORE:
         left += f" but in a few windows (the median window is off by {last.score.median:.2f} times the noise)"
-    named, error = ", ".join(sorted(final.names)), f"{last.score.rms:.3g} times the noise"
+    named, error = ", ".join(sorted(final.names)), error_in_words(last.score)
     if against:
         have = f"{named} added" if named else "play, stiffness and damping alone"
         return f"Incomplete: with {have} the prediction error is {error} on this record, but not on the held-out one. {against}"
@@ -78,7 +78,7 @@ def _few(last: Fit) -> str:
     if held is None or held.rms <= WORSE * max(LITTLE_MORE, last.score.rms):
         return ""
     return (
-        f" On the held-out record a few windows are missed (its error is {held.rms:.3g} times the noise, in the median window "
+        f" On the held-out record a few windows are missed (its error is {error_in_words(held)}, in the median window "
         f"{held.median:.2f})."
     )
 
@@ -89,8 +89,8 @@ def _elsewhere(first: Fit, last: Fit, here: bool) -> str:
     if before is None or after is None:
         return ""
     if last is not first and after.rms > WORSE * before.rms and after.median > NEARLY:
-        rises = f"On the held-out record the error rises from {before.rms:.3g} to {after.rms:.3g} times the noise: "
+        rises = f"On the held-out record the error rises from {before.rms:.3g} to {error_in_words(after)}: "
         return rises + "what was added stands in for something else."
     if here and after.median > LITTLE_MORE:
-        return f"The held-out record is still missed, by {after.rms:.3g} times the noise: something else is at work there."
+        return f"The held-out record is still missed, by {error_in_words(after)}: something else is at work there."
     return ""

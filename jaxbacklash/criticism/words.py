@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..fitting import Fit
+from ..fitting import Fit, error_in_words
 from .failures import PLACES, Dependence
 from .surface import Surface
 
-NOISE = "What is left is noise: {rms:.3g} times what noise alone gives, and no torque is missing beyond {bound:.2g} {unit}."
+NOISE = "What is left is noise: the error is {error}, and no torque is missing beyond {bound:.2g} {unit}."
 STRONG = 0.1
 """Share of the variance of ranks below which a dependence is not worth a sentence."""
 
@@ -19,11 +19,11 @@ def headline(fit: Fit, surface: Surface) -> str:
     """How much is missing."""
     if fit.score.rms < 1.05:
         return (
-            f"Window by window the misfit looks like noise ({fit.score.rms:.3g} times it), but the record as a whole asks for a "
+            f"Window by window the misfit looks like noise ({error_in_words(fit.score)}), but the record as a whole asks for a "
             f"torque of {surface.rms:.3g} {surface.unit} rms."
         )
     return (
-        f"The misfit is {fit.score.rms:.3g} times the noise (median window {fit.score.median:.3g}): a torque of "
+        f"The misfit is {error_in_words(fit.score)} (median window {fit.score.median:.3g}): a torque of "
         f"{surface.rms:.3g} {surface.unit} rms is missing."
     )
 

@@ -7,3 +7,6 @@ from .fit import fit as fit
 from .fit import predict_record as predict_record
 from .result import Fit as Fit
 from .score import Score as Score
+from .score import error_in_words as error_in_words
+from .score import measures as measures
+from .score import percent as percent

@@ -12,7 +12,7 @@ from ..records import Record, oriented
 from ..system import System
 from .fit import predict_record
 from .left_over import quieter
-from .score import Score
+from .score import Score, error_in_words
 from .size import check_size
 from .windows import observed_noise
 
@@ -36,10 +36,10 @@ class Comparison:
         """The comparison in one or two sentences."""
         s = self.score
         if self.adequate:
-            return f"The model predicts this record to its noise: {s.rms:.3g} times the noise, median window {s.median:.3g}."
+            return f"The model predicts this record to its noise: {error_in_words(s)}, median window {s.median:.3g}."
         worst = s.window_times[int(np.nanargmax(s.window_rms))]
         return (
-            f"The model misses this record by {s.rms:.3g} times the noise (median window {s.median:.3g}); "
+            f"The model misses this record by {error_in_words(s)} (median window {s.median:.3g}); "
             f"the worst window begins at {worst:.2f} s."
         )
 

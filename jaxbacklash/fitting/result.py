@@ -18,7 +18,7 @@ from .estimates import Estimate
 from .lengths import SCORE_WINDOW
 from .print_estimate import line
 from .problem import Problem, Unknowns
-from .score import Score
+from .score import Score, error_in_words
 
 DOUBTED = "only if the model is right: it is not, see below"
 """What stands beside every interval of a fit that misses its record by more than chance."""
@@ -100,10 +100,10 @@ def text(fit: Fit, causes: Sequence[Named] = ()) -> str:
         beside = f", of {driver} {at_most(fit, driver, number_of)}{moved:.3g} {unit}" if moved else ""
         lines.append(f"  noise of {name} {at_most(fit, name, number_of)}{noise:.3g} {own}{beside}")
         lines.append(
-            f"  prediction error over windows{_length(score)}: {score.rms:.3g} times the noise (median window {score.median:.3g})"
+            f"  prediction error over windows{_length(score)}: {error_in_words(score)} (median window {score.median:.3g})"
         )
     if fit.heldout is not None:
-        lines.append(f"  on the held-out record: {fit.heldout.rms:.3g} times the noise (median {fit.heldout.median:.3g})")
+        lines.append(f"  on the held-out record: {error_in_words(fit.heldout)} (median {fit.heldout.median:.3g})")
     effects = ", ".join(sorted(fit.system.effects)) or "none"
     lines.append(f"model: {fit.model}; effects added: {effects}")
     if fit.per_inertia:
@@ -156,15 +156,15 @@ def verdict_text(fit: Fit, causes: Sequence[Named] = ()) -> str:
     beyond = beyond_chance(fit)
     if fit.adequate and beyond:
         sentence = (
-            f"The model explains the record to {worst.rms:.3g} times its noise (median window {worst.median:.2f}), but "
+            f"The model explains the record to {error_in_words(worst)} (median window {worst.median:.2f}), but "
             "what is left is more than chance: intervals hold only if the model is right."
         )
     elif fit.adequate:
-        sentence = f"The model explains the record to its noise (median window {worst.median:.2f} times the noise)."
+        sentence = f"The model explains the record to its noise: {error_in_words(worst)}, median window {worst.median:.2f}."
     else:
         sentence = (
-            f"The model misses something: the median window is off by {worst.median:.3g} times the noise, all windows by "
-            f"{worst.rms:.3g}; intervals are widened by that misfit and hold only if the model is right."
+            f"The model misses something: its error is {error_in_words(worst)}, in the median window {worst.median:.3g} times; "
+            "intervals are widened by that misfit and hold only if the model is right."
         )
     sentence = f"{sentence} {causes_text(causes)}".rstrip()
     missing = [e for e in fit.parameters.values() if e.value is None]

@@ -37,7 +37,7 @@ class Score(eqx.Module):
 
     Attributes: ``rms`` over all windows; ``median`` window; ``window_rms`` (K,) per score window, NaN where too short;
     ``window_times`` (K,) their start times [s]; ``t`` (N,), ``measured`` and ``predicted`` (N,) the observed channel,
-    ``residual`` (N,) their difference over the noise; ``length`` [s] of a score window.
+    ``residual`` (N,) their difference over the noise; ``length`` [s] of a score window; ``observed`` name of the channel.
     """
 
     rms: float
@@ -49,6 +49,40 @@ class Score(eqx.Module):
     predicted: np.ndarray
     residual: np.ndarray
     length: float = SCORE_WINDOW
+    observed: str = eqx.field(static=True, default="z")
+
+    @property
+    def nrmse(self) -> float:
+        """The error as a share of what was measured, see `nrmse`."""
+        return nrmse(self.measured, self.predicted)
+
+
+def nrmse(measured: np.ndarray, predicted: np.ndarray) -> float:
+    """Normalised root-mean-square error: rms of the prediction error over the standard deviation of the measured channel [1].
+
+    Both arrays have the shape (N,) and the channel's unit. NaN for a channel that never moves.
+    """
+    spread = float(np.std(measured))
+    return float(np.sqrt(np.mean((measured - predicted) ** 2))) / spread if spread > 0.0 else float("nan")
+
+
+def percent(share: float) -> str:
+    """A share (1 is the whole) as a person reads it, with two digits: ``12 %``."""
+    told = 100.0 * share
+    return f"{told:.0f} %" if 99.5 <= told < 1e5 else f"{told:.2g} %"
+
+
+def error_in_words(score: Score) -> str:
+    """The error of all windows over the noise, and what share of the measured channel it is: with a quiet sensor, many times the
+    noise may be a small share."""
+    noise = f"{score.rms:.3g} times the noise"
+    share = score.nrmse
+    return f"{noise}, {percent(share)} of the {measures(score.observed)}" if np.isfinite(share) else noise
+
+
+def measures(observed: str) -> str:
+    """What a channel measures, in a word."""
+    return "force" if observed == "T" else "motion"
 
 
 def frozen(problem: Problem, theta: Any) -> Problem:
@@ -144,6 +178,7 @@ def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout
         predicted=flat(predicted.motion),
         residual=-flat(motion),
         length=layout.dt * layout.length * group,
+        observed=problem.system.observed,
     )
 
 

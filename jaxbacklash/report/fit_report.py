@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..fitting import Comparison, Fit, Score
+from ..fitting import Comparison, Fit, Score, error_in_words
 from ..fitting.loop import NOTHING, read_plateau, sliding_level
 from ..parameters import channel_unit, unit_text
 from ..pointwise import along
@@ -63,7 +63,7 @@ def pictures(
     panels = [
         Panel(
             "Measured against model",
-            f"Each window is predicted from its own start; the model is off by {score.rms:.3g} times the noise over all windows, "
+            f"Each window is predicted from its own start; the model is off by {error_in_words(score)}, over all windows, "
             f"by {score.median:.3g} times in the median one.",
             to_svg(
                 measured_against_model(

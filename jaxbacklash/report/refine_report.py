@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..criticism import Findings, Refinement
+from ..fitting import error_in_words
 from .diagnose_report import failure_panels
 from .figures import candidate_ranking, error_by_stage, to_svg
 from .fit_report import pictures, series
@@ -112,7 +113,7 @@ def _rest(refinement: Refinement, have: str, picture: Panel) -> Panel:
     """What a model leaves that explains the record."""
     score = refinement.fit.score
     sentence = (
-        f"The median window is off by {score.median:.3g} times the noise, all windows by {score.rms:.3g}; noise alone would "
+        f"All windows are off by {error_in_words(score)}, the median one by {score.median:.3g} times; noise alone would "
         "stay within two noises and hang together nowhere."
     )
     return replace(picture, title=f"What is left: {have}", sentence=sentence, anchor="last-residual")

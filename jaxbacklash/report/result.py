@@ -40,17 +40,29 @@ def rms(score: Score) -> float:
     return float(np.sqrt(np.mean((score.measured - score.predicted) ** 2)))
 
 
+def errors(score: Score) -> dict[str, float | None]:
+    """The errors on a record: in the unit of the measured channel, over the noise, and as a share of the channel."""
+    return {
+        "rms": finite(rms(score)),
+        "rms_over_noise": finite(score.rms),
+        "median_over_noise": finite(score.median),
+        "nrmse": finite(score.nrmse),
+    }
+
+
+def heldout_errors(held: Score | None) -> dict[str, float | None]:
+    """The same of a held-out record, None without one."""
+    known = {} if held is None else errors(held)
+    return {f"heldout_{name}": known.get(name) for name in ("rms_over_noise", "median_over_noise", "nrmse")}
+
+
 def stage(fit: Fit, added: str | None = None) -> dict[str, Any]:
     """One entry of ``stages``: a model, how well it predicts, and its parameters."""
-    held = fit.heldout
     return {
         "added": added,
         "effects": sorted(fit.system.effects),
-        "rms": finite(rms(fit.score)),
-        "rms_over_noise": finite(fit.score.rms),
-        "heldout_rms_over_noise": None if held is None else finite(held.rms),
-        "median_over_noise": finite(fit.score.median),
-        "heldout_median_over_noise": None if held is None else finite(held.median),
+        **errors(fit.score),
+        **heldout_errors(fit.heldout),
         "parameters": {name: clean(estimate) for name, estimate in fit.parameters.items()},
         "candidates": [],
     }
@@ -129,7 +141,7 @@ def as_json(
         result["noise_open"] = dict(fit.noise_open[0])
     if len(fit.records) > 1:
         result["records"] = [
-            about_record(r) | {"noise": finite(n), "rms_over_noise": finite(s.rms), "median_over_noise": finite(s.median)}
+            about_record(r) | {"noise": finite(n)} | errors(s)
             for r, n, s in zip(fit.records, fit.noise, fit.scores)
         ]
     return result
@@ -146,9 +158,8 @@ def comparison_json(found: Comparison, model: str, *, command_line: str = "", ve
         for name, spec in described.items() if not spec.fixed
     }  # fmt: skip
     only = {
-        "added": None, "effects": sorted(found.system.effects), "rms": finite(rms(found.score)),
-        "rms_over_noise": finite(found.score.rms), "median_over_noise": finite(found.score.median),
-        "heldout_rms_over_noise": None, "heldout_median_over_noise": None, "parameters": parameters, "candidates": [],
+        "added": None, "effects": sorted(found.system.effects), **errors(found.score), **heldout_errors(None),
+        "parameters": parameters, "candidates": [],
     }  # fmt: skip
     return {
         "schema": SCHEMA, "command": "compare", "command_line": command_line, "version": version, "model": model,

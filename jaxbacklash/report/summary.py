@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import PurePosixPath
 from typing import Any
 
+from ..fitting import percent
 from .chaos_tiles import chaos_tiles, chosen
 from .facts import (
     BASE,
@@ -16,8 +17,10 @@ from .facts import (
     brief,
     cross_check_table,
     facts,
+    measured,
     parameters_of,
     parts,
+    share,
     skeleton_tables,
 )
 from .figures_model import error_with, stage_name
@@ -44,12 +47,12 @@ def summarise(result: Entry) -> dict[str, Any]:
         "findings": [*_causes(result), *(str(sentence) for sentence in result.get("findings") or [])],
         "tiles": chaos_tiles(result)
         if "lyapunov" in result
-        else _tiles([best_method(result)] if result.get("command") == "skeleton" else stages),
+        else _tiles([best_method(result)] if result.get("command") == "skeleton" else stages, record),
         "skeletons": skeleton_tables(result),
         "parameters": parameter_rows(stages, str(result.get("intervals_note") or "")),
-        "stages": stage_rows(stages) if len(stages) > 1 else [],
+        "stages": stage_rows(stages, record) if len(stages) > 1 else [],
         "stage_heads": _stage_heads(stages),
-        "scores": _scores(stages[-1]) if stages else [],
+        "scores": _scores(stages[-1], record) if stages else [],
         "candidates": candidate_tables(stages),
         "alternatives": [" + ".join(map(str, names)) for names in result.get("alternatives") or [] if names],
         "alternatives_text": str(result.get("alternatives_text") or ""),
@@ -110,7 +113,7 @@ def _noted(interval: str, note: str) -> str:
     return f"{interval} ({note})" if note and interval and interval != UNKNOWN else interval
 
 
-def stage_rows(stages: Sequence[Entry]) -> list[dict[str, Any]]:
+def stage_rows(stages: Sequence[Entry], record: Entry) -> list[dict[str, Any]]:
     """One row per model tried and kept: its errors, and where the joint's own parameters stood."""
     rows = []
     for number, stage in enumerate(stages):
@@ -118,7 +121,7 @@ def stage_rows(stages: Sequence[Entry]) -> list[dict[str, Any]]:
         rows.append(
             {
                 "name": stage_name(stage, number).replace("_\n", "_").replace("\n", " "),
-                "scores": [text for _, text in _scores(stage)],
+                "scores": [text for _, text in _scores(stage, record)],
                 "values": [(brief(found.get(name), unit=False), _step((stage.get("moved") or {}).get(name))) for name in BASE],
             }
         )
@@ -146,7 +149,7 @@ def candidate_tables(stages: Sequence[Entry]) -> list[dict[str, Any]]:
     return tables
 
 
-def _tiles(stages: Sequence[Entry]) -> list[dict[str, str]]:
+def _tiles(stages: Sequence[Entry], record: Entry) -> list[dict[str, str]]:
     if not stages:
         return []
     tiles = []
@@ -163,20 +166,32 @@ def _tiles(stages: Sequence[Entry]) -> list[dict[str, str]]:
     last = stages[-1]
     if is_number(last.get("rms_over_noise")):
         held = last.get("heldout_rms_over_noise")
-        rest = f"held-out record: {short(held)}" if is_number(held) else "1.00 would be noise alone"
+        beside = share(last, record).removeprefix(", ")
+        other = f"held-out record: {short(held)}" if is_number(held) else "1.00 would be noise alone"
+        if is_number(held):
+            other += share(last, record, "heldout_nrmse")
+        rest = f"{beside}; {other}" if beside else other
         error = short(last["rms_over_noise"])
         tiles.append({"label": "prediction error", "value": error, "unit": "× noise", "rest": rest})
     return tiles
 
 
-def _scores(stage: Entry) -> list[tuple[str, str]]:
+def _scores(stage: Entry, record: Entry) -> list[tuple[str, str]]:
+    of = f"share of the {measured(record)}"
     names = (
         ("rms_over_noise", "rms over noise"),
+        ("nrmse", of),
         ("median_over_noise", "median window"),
         ("heldout_rms_over_noise", "held-out rms"),
+        ("heldout_nrmse", f"held-out {of}"),
         ("heldout_median_over_noise", "held-out median"),
     )
-    return [(label, short(stage.get(key))) for key, label in names]
+    return [(label, _error(stage, key)) for key, label in names]
+
+
+def _error(stage: Entry, key: str) -> str:
+    value: Any = stage.get(key)
+    return percent(value) if key.endswith("nrmse") and is_number(value) else short(value)
 
 
 def _stage_heads(stages: Sequence[Entry]) -> list[str]:
