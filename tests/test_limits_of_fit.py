@@ -63,6 +63,20 @@ def test_what_comes_only_together_is_not_determined():
     assert together["damping"].value == 2.0
 
 
+@pytest.mark.parametrize(("play", "leaves"), [(0.0, True), (0.01, True), (0.2, False)])
+@pytest.mark.parametrize("error", [300.0, np.inf])
+def test_a_motion_beyond_the_fitted_edges_is_not_said_to_stay_inside_them(play, leaves, error):
+    """|z| goes up to 0.02 rad; the stiffness never stands clear of its error, so that neither it nor the play is told."""
+    system = System(1.0, Contact(play, 900.0), Damper(2.0), observed="y")
+    found = judged(system, {"backlash": 1e-5, "stiffness": error, "damping": 0.1})
+    for name in NAMES[:2]:
+        assert (found[name].value, found[name].verdict) == (None, "not determined")
+        assert ("never leaves the play" in found[name].why) == (not leaves)
+        assert (f"z leaves the fitted play of {play:.3g} rad (|z| up to 0.02" in found[name].why) == leaves
+        assert ("5 standard errors" in found[name].why) == leaves
+    assert "over which z ranges" in found["backlash"].why
+
+
 def test_damping_is_told_as_other_parameters_are():
     system = System(1.0, Contact(0.01, 900.0), Damper(0.1), observed="y")
     found = judged(system, {"backlash": 1e-5, "stiffness": 1.0, "damping": 0.2})["damping"]

@@ -153,6 +153,17 @@ def test_a_contact_that_carries_force_was_met_however_soft_it_begins():
     assert "exceeds half" in found["backlash"].why
 
 
+def test_a_force_on_one_side_alone_is_not_told_as_a_motion_inside_the_play():
+    record = record_of()
+    pushed = record.replace(T=np.maximum(record.channels["T"], 0.0))
+    stderr = {"stiffness": 0.3 * TRUTH["stiffness"], "backlash": 1e-4}
+    found = judge(model(), list(stderr), stderr, [pushed], per_inertia=False, translational=True)
+    for estimate in found.values():
+        assert estimate.value is None
+        assert "never leaves" not in estimate.why
+        assert "on one side only" in estimate.why
+
+
 @pytest.mark.slow
 def test_intervals_hold_the_truth():
     inside = {name: 0 for name in TRUTH}

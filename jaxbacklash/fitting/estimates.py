@@ -156,11 +156,18 @@ def _joint_reasons(
     above, below = max(c.above for c in touch), max(c.below for c in touch)
     reach = max(c.reach for c in touch)
     weak = stiffness < CLEAR * stderr.get("stiffness", 0.0) or not np.isfinite(stderr.get("stiffness", 0.0))
-    if weak and all(r.kind == "transmitted" for r in records) and min(above, below) > 0.0:
-        # What only contact can carry was measured: the joint met both edges, and the play is judged by its own error.
-        return {"stiffness": (UNDETERMINED, "contact shows, but its standard error exceeds a fifth of its value")}
+    if weak and all(r.kind == "transmitted" for r in records):
+        # What only contact can carry was measured: where the joint met both edges, the play is judged by its own error.
+        met = "" if min(above, below) > 0.0 else " on one side only"
+        why = f"contact shows{met}, but its standard error exceeds a fifth of its value"
+        return {name: (UNDETERMINED, why) for name in (("stiffness", "backlash") if met else ("stiffness",))}
     if weak or (above == 0.0 and below == 0.0):
         why = f"z never leaves the play: |z| stays below {reach:.4g} {length} and no contact shows"
+        if above > 0.0 or below > 0.0:
+            why = (
+                f"z leaves the fitted play of {high - low:.3g} {length} (|z| up to {reach:.4g} {length}), but the contact "
+                f"stiffness is not clear of zero by {CLEAR:g} standard errors"
+            )
         lost = max(most_play(r) for r in records)
         range_of_z = f"; the lost motion, over which z ranges, is {lost:.3g} {length}" if system.observed != "T" else ""
         return {"backlash": (UNDETERMINED, why + range_of_z), "stiffness": (UNDETERMINED, why)}
