@@ -79,6 +79,7 @@ Inertia = Annotated[
 Out = Annotated[Path | None, typer.Option("--out", help="Folder for result.json, model.toml and report.html")]
 Json = Annotated[bool, typer.Option("--json", help="Print the machine-readable result and nothing else")]
 Seed = Annotated[int, typer.Option("--seed", help="Seed of everything random")]
+NoSeed = Annotated[int, typer.Option("--seed", help="Changes nothing: this search draws nothing at random")]
 Window = Annotated[
     float | None,
     typer.Option(
@@ -204,7 +205,7 @@ def refine(
     reading: Reading = AS_IT_IS,
     window: Window = None,
     translation: Translation = False,
-    seed: Seed = 0,
+    seed: NoSeed = 0,
 ) -> None:
     """Find the effects a record needs beyond the base model, add them one by one, and say what is left."""
     from .commands import refine as command

@@ -30,8 +30,9 @@ def causes_first(
 ) -> tuple[Refinement | None, list[Cause]]:
     """The causes of misfit that lie in a record, and a refinement that ends with them where they leave nothing to look for.
 
-    The arguments are those of `refine`. None where the base model explains the record, or where the cause is one that an effect
-    of the catalogue tells as well (a lag of the measured channel), so that a search may name it.
+    The arguments are those of `refine`; ``seed`` changes nothing here either, as only one start is tried. None where the base
+    model explains the record, or where the cause is one that an effect of the catalogue tells as well (a lag of the measured
+    channel), so that a search may name it.
     """
     if record.kind == "transmitted":
         return None, []

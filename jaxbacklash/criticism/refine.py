@@ -67,7 +67,8 @@ def refine(
     system : a system to start from instead of an estimate from the data
     window : length of the windows whose error is quoted [s]; default 0.2 s, or 32 samples where that is longer
     translational : units of a translating mass
-    seed : seed of everything random
+    seed : changes nothing, and is taken as `fit` takes it: the search draws nothing at random. It begins at one estimate, and the
+        noise under which it tries a promise or an experiment out is the same in every run
     progress : told the stage in words and the share of the work done
     settled : told a model that leaves but noise as soon as it is scored, while the search still looks for more, and at last the
         model kept, unless that was the last it was told; that once more, if others do as well, with intervals that allow for them
@@ -168,8 +169,8 @@ class _Judge:
         )
         joined = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1] if trial.tied else 0.0))
         return Fit(
-            plain, free, estimates, scored, held, records, bench.layout.noise, bench.layout.input_noise, covariance, 1, 1,
-            trial.tied, trial.cost, 0, self.start, self.model, self.per_inertia, self.translational, {}, joined, still,
+            plain, free, estimates, scored, held, records, bench.layout.noise, bench.layout.input_noise, covariance, 0, 0,
+            trial.tied, trial.cost, trial.steps, self.start, self.model, self.per_inertia, self.translational, {}, joined, still,
             (why_open(bench.record, bench.layout.noise[0], scored[0]),),
         )  # fmt: skip
 

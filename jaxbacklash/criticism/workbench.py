@@ -60,7 +60,7 @@ class Trial:
 
     ``misfit`` is the root of the reduced chi-square; ``schur`` (q, q) the information in units of ``scales`` (q,); ``pull``
     (q,) the score of every column at the end; ``tied`` whether the windows are one trajectory; ``done`` whether it converged;
-    ``penalty`` of the criterion; ``correlation`` how many samples of the residual count for one.
+    ``penalty`` of the criterion; ``correlation`` how many samples of the residual count for one; ``steps`` of its last search.
     """
 
     system: System
@@ -76,6 +76,7 @@ class Trial:
     done: bool
     penalty: float
     correlation: float
+    steps: int = 0
 
     @property
     def value(self) -> dict[str, float]:
@@ -292,7 +293,7 @@ class Workbench:
             fitted, names, free, solution.value, cost, float(np.sqrt(2.0 * cost / count)),
             np.asarray(solution.stats["schur"]), np.asarray(solution.stats["pull"]),
             np.sum(problem.directions, axis=0), tied, done, float(penalty),
-            _correlation(self.windows, np.asarray(solution.stats["predicted"].motion)),
+            _correlation(self.windows, np.asarray(solution.stats["predicted"].motion)), int(solution.stats["steps"]),
         )  # fmt: skip
 
     def effects(self, trial: Trial) -> dict[str, AbstractEffect]:

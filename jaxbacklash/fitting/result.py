@@ -41,8 +41,9 @@ class Fit:
 
     Attributes: ``system`` with the fitted values; ``parameters`` the free ones, by name; ``scores`` one per record;
     ``heldout`` the score of a held-out record; ``noise`` and ``input_noise`` per record; ``covariance`` (q, q) in the order of
-    ``free``; ``agreeing``, ``tried`` starts that reached the best minimum; ``tied`` True when the windows were tied;
-    ``cost`` half the sum of squares; ``start`` the equation-error estimate it began from; ``seconds`` by stage;
+    ``free``; ``agreeing`` of ``tried`` starts reached the best minimum, none were tried where a search had a model to begin from;
+    ``steps`` taken from there; ``tied`` True when the windows were tied; ``cost`` half the sum of squares; ``start`` the
+    equation-error estimate it began from; ``seconds`` by stage;
     ``noise_open`` per record, by channel, why its noise is an upper bound; without the channels whose noise is known.
     """
 
@@ -112,7 +113,10 @@ def text(fit: Fit, causes: Sequence[Named] = ()) -> str:
     lines += [line(estimate, note) for estimate in fit.parameters.values()]
     lines += _correlations(fit)
     how = "tied into one trajectory" if fit.tied else "each on its own"
-    lines.append(f"{fit.agreeing} of {fit.tried} starts reached this minimum; windows {how}; {fit.steps} steps")
+    if fit.tried:
+        lines.append(f"{fit.agreeing} of {fit.tried} starts reached this minimum; windows {how}; {fit.steps} steps")
+    else:
+        lines.append(f"begun where the search stood; windows {how}; {fit.steps} steps from there")
     lines.append(verdict_text(fit, causes))
     return "\n".join(lines)
 
