@@ -46,11 +46,13 @@ def test_a_relative_motion_below_the_noise_of_a_sample_is_an_answer(own):
     check_answers([shaken(own=own, seed=s) for s in range(4)])
 
 
-def judged(system, stderr, correlation=0.0, rate=400.0):
+def judged(system, stderr, correlation=0.0, rate=400.0, explained=True):
     record = shaken(rate=rate, own=0.02)
     covariance = np.diag(np.square([stderr[n] for n in NAMES]))
     covariance[0, 1] = covariance[1, 0] = correlation * stderr["backlash"] * stderr["stiffness"]
-    return judge(system, NAMES, stderr, [record], per_inertia=False, translational=False, covariance=covariance)
+    return judge(
+        system, NAMES, stderr, [record], per_inertia=False, translational=False, covariance=covariance, explained=explained
+    )
 
 
 def test_what_comes_only_together_is_not_determined():

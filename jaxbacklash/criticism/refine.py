@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..fitting.answers import check_answers
+from ..fitting.chance import explains
 from ..fitting.counts import few_counts
 from ..fitting.equation_error import Start
 from ..fitting.estimates import judge
@@ -165,7 +166,7 @@ class _Judge:
         records = (bench.record,)
         estimates = judge(
             plain, free, stderr, records, per_inertia=self.per_inertia, translational=self.translational,
-            covariance=covariance,
+            covariance=covariance, explained=explains(scored, plain),
         )
         joined = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1] if trial.tied else 0.0))
         return Fit(

@@ -8,7 +8,7 @@ from itertools import pairwise
 from ..causes import Cause
 from ..fitting import Fit, Score, measures, percent
 from ..fitting.print_estimate import line
-from ..fitting.result import at_most, doubt
+from ..fitting.result import DOUBTED, at_most, doubt
 from ..parameters import channel_unit
 from .experiment import Experiment
 from .ranking import of_stage, table
@@ -76,10 +76,10 @@ def text(refinement: Refinement) -> str:
     lines = [refinement.verdict.text, "", fit.records[0].summary(), *noise_lines(fit), "", *_stages(stages), ""]
     if fit.per_inertia:
         lines.append("no inertia was given: stiffness, damping and torques are per unit inertia")
-    lines.append("parameters, value +- standard error, and 95 % interval")
-    note = doubt(fit)
+    note = doubted(refinement)
+    lines.append("parameters, value +- standard error" + ("" if note else ", and 95 % interval"))
     for estimate in fit.parameters.values():
-        ends = estimate.ci95
+        ends = None if note else estimate.ci95
         shown = line(estimate, note)
         lines.append(f"{shown:<72} {ends[0]:.6g} to {ends[1]:.6g}" if ends is not None else shown)
     lines += ["", alternatives_sentence(refinement)]
@@ -90,6 +90,12 @@ def text(refinement: Refinement) -> str:
             have = ", ".join(sorted(stages[number].fit.system.effects)) or "the base model"
             lines += ["", f"what one more effect would bring to {have} ({ranking.current:.3g} now)", *table(ranking, 5)]
     return "\n".join(lines)
+
+
+def doubted(refinement: Refinement) -> str:
+    """What is to stand beside the standard errors of the model kept, in place of intervals: nothing where it is complete and
+    leaves only noise."""
+    return doubt(refinement.fit) if refinement.verdict.complete else DOUBTED
 
 
 def noise_lines(fit: Fit) -> list[str]:
@@ -109,7 +115,8 @@ def alternatives_sentence(refinement: Refinement) -> str:
     if not refinement.alternatives:
         return "No other set of effects as small explains the record as well."
     other = "; or ".join(" + ".join(names) for names in refinement.alternatives)
-    said = f"This record cannot tell {' + '.join(refinement.effects)} from: {other}; the intervals allow for either."
+    allow = "standard errors" if doubted(refinement) else "intervals"
+    said = f"This record cannot tell {' + '.join(refinement.effects)} from: {other}; the {allow} allow for either."
     return " ".join([said, *(map(str, refinement.experiments) if refinement.experiments else ["Another excitation may."])])
 
 

@@ -36,7 +36,22 @@ class Scored(Protocol):
 
 def beyond_chance(fit: Scored) -> bool:
     """Whether any record of a fit is missed by more than noise explains."""
-    return any(misses(score, 2 if fit.system is None else len(fit.system.state_names)) for score in fit.scores)
+    return missed(fit.scores, fit.system)
+
+
+def missed(scores: Sequence[Score], system: Any) -> bool:
+    """The same of the scores that a system has on its records."""
+    return any(misses(score, 2 if system is None else len(system.state_names)) for score in scores)
+
+
+def near_noise(scores: Sequence[Score]) -> bool:
+    """Whether the median window of every score is within a tenth of the noise, all its windows within three tenths."""
+    return all(s.median < 1.1 and s.rms < 1.3 for s in scores)
+
+
+def explains(scores: Sequence[Score], system: Any) -> bool:
+    """Whether a system leaves only noise of its records, near it and within chance: intervals hold where it does."""
+    return near_noise(scores) and not missed(scores, system)
 
 
 def misses(score: Score, states: int) -> bool:

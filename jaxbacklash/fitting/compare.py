@@ -10,6 +10,7 @@ from ..errors import BadInput, NoAnswer
 from ..parameters import channel_unit
 from ..records import Record, oriented
 from ..system import System
+from .chance import near_noise
 from .fit import predict_record
 from .left_over import quieter
 from .score import Score, error_in_words
@@ -30,7 +31,7 @@ class Comparison:
     @property
     def adequate(self) -> bool:
         """True when what the model leaves is noise."""
-        return self.score.median < 1.1 and self.score.rms < 1.3
+        return near_noise([self.score])
 
     def sentence(self) -> str:
         """The comparison in one or two sentences."""

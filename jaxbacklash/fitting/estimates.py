@@ -94,12 +94,14 @@ def judge(
     per_inertia: bool,
     translational: bool,
     covariance: np.ndarray | None = None,
+    explained: bool = True,
 ) -> dict[str, Estimate]:
     """Estimates with verdicts.
 
     A stiffness that does not stand clear of its error, or a play that no sample leaves, was not determined; a play met on
     one side only is one-sided: the record tells where that edge is, not how far away the other one lies. Of two parameters
-    whose errors are one, by the ``covariance`` (q, q) in the order of ``free``, neither was.
+    whose errors are one, by the ``covariance`` (q, q) in the order of ``free``, neither was. Of a model that leaves more than
+    noise (not ``explained``) no bound is told, as that would hold only if the model were right.
     """
     described, present = specs(system), values(system)
     length = "m" if translational else "rad"
@@ -121,7 +123,7 @@ def judge(
             verdict, why = UNDETERMINED, "this record does not change with it"
         elif verdict == FOUND and (spec.positive or name in BOUNDED) and error > MOST_UNCERTAIN * abs(value):
             verdict, why = UNDETERMINED, "its standard error exceeds half of its value"
-            if name in BOUNDED:
+            if name in BOUNDED and explained:
                 why += f": below {value + BELOW_95 * error:.2g} {unit} (95 %)"
         elif verdict == FOUND and name in partners:
             verdict, why = UNDETERMINED, f"the record tells it only together with {partners[name]}: their errors are one"

@@ -17,6 +17,7 @@ from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..system import System
 from .answers import check_answers
+from .chance import explains
 from .equation_error import Start
 from .estimates import UNDETERMINED, Estimate, judge
 from .force import tell_way
@@ -121,7 +122,10 @@ def fit(
     covariance = excess * found.covariance
     stderr = dict(zip(names, np.sqrt(np.diag(covariance))))
     per_inertia = inertia is None and chosen[0].kind not in ABSOLUTE
-    estimates = judge(fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational, covariance=covariance)
+    estimates = judge(
+        fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational, covariance=covariance,
+        explained=explains(scored, fitted),
+    )  # fmt: skip
     if contact_samples(fitted, chosen[0].dt) < SHORTEST:
         estimates |= _between_samples(estimates, fitted, chosen, missed=scored[0].rms > EXPLAINED)
     if profile:

@@ -18,7 +18,7 @@ def number(value: float, stderr: float | None) -> str:
 
 
 def line(estimate: Estimate, note: str = "") -> str:
-    """One parameter in words: value, error, interval, or why there is none; a ``note`` stands beside an interval."""
+    """One parameter in words: value and standard error, or why there is none; a ``note`` stands beside an error."""
     name = f"  {estimate.label:<24}"
     if estimate.value is None:
         return f"{name} {estimate.verdict}: {estimate.why}"

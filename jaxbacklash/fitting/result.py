@@ -11,7 +11,7 @@ import numpy as np
 from ..parameters import channel_unit
 from ..records import Record
 from ..system import System
-from .chance import beyond_chance
+from .chance import beyond_chance, explains, near_noise
 from .counts import few_counts
 from .equation_error import Start
 from .estimates import Estimate
@@ -20,8 +20,8 @@ from .print_estimate import line
 from .problem import Problem, Unknowns
 from .score import Score, error_in_words
 
-DOUBTED = "only if the model is right: it is not, see below"
-"""What stands beside every interval of a fit that misses its record by more than chance."""
+DOUBTED = "only if the model is right: it is not, see the verdict"
+"""What stands beside every standard error of a fit that misses its record by more than chance, in place of an interval."""
 
 
 class Named(Protocol):
@@ -78,15 +78,15 @@ class Fit:
     @property
     def adequate(self) -> bool:
         """True when what the model leaves is noise: the median window within a tenth of it, all windows within three tenths."""
-        return all(s.median < 1.1 and s.rms < 1.3 for s in self.scores)
+        return near_noise(self.scores)
 
     def __str__(self) -> str:
         return text(self)
 
 
 def doubt(fit: Fit) -> str:
-    """What is to stand beside the intervals of a fit: nothing where it leaves only noise."""
-    return DOUBTED if beyond_chance(fit) else ""
+    """What is to stand beside the standard errors of a fit in place of intervals: nothing where it leaves only noise."""
+    return "" if explains(fit.scores, fit.system) else DOUBTED
 
 
 def text(fit: Fit, causes: Sequence[Named] = ()) -> str:
@@ -161,14 +161,14 @@ def verdict_text(fit: Fit, causes: Sequence[Named] = ()) -> str:
     if fit.adequate and beyond:
         sentence = (
             f"The model explains the record to {error_in_words(worst)} (median window {worst.median:.2f}), but "
-            "what is left is more than chance: intervals hold only if the model is right."
+            "what is left is more than chance: standard errors hold only if the model is right, and no intervals are given."
         )
     elif fit.adequate:
         sentence = f"The model explains the record to its noise: {error_in_words(worst)}, median window {worst.median:.2f}."
     else:
         sentence = (
             f"The model misses something: its error is {error_in_words(worst)}, in the median window {worst.median:.3g} times; "
-            "intervals are widened by that misfit and hold only if the model is right."
+            "standard errors are widened by that misfit and hold only if the model is right, and no intervals are given."
         )
     sentence = f"{sentence} {causes_text(causes)}".rstrip()
     missing = [e for e in fit.parameters.values() if e.value is None]

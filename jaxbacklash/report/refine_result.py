@@ -9,7 +9,7 @@ import numpy as np
 from ..criticism import Findings, Refinement
 from ..criticism.experiment import Experiment
 from ..criticism.ranking import Ranking, of_stage
-from ..criticism.refinement import Moved, alternatives_sentence, steps
+from ..criticism.refinement import Moved, alternatives_sentence, doubted, steps
 from ..effects import Contact
 from ..errors import BadInput, NoAnswer
 from ..fitting import Fit
@@ -63,6 +63,8 @@ def refinement_json(
         }
         for stage, following, step_of in zip(stages, followed, steps(stages))
     ]
+    result["intervals_note"] = doubted(refinement)
+    result["stages"][-1]["intervals_hold"] = not result["intervals_note"]
     result["model"] = stages[0].fit.model
     result["alternatives"] = [list(names) for names in refinement.alternatives]
     result["alternatives_text"] = alternatives_sentence(refinement)

@@ -64,6 +64,7 @@ def stage(fit: Fit, added: str | None = None) -> dict[str, Any]:
         **errors(fit.score),
         **heldout_errors(fit.heldout),
         "parameters": {name: clean(estimate) for name, estimate in fit.parameters.items()},
+        "intervals_hold": not doubt(fit),  # where not, each ci95 is what it would be if the model were right
         "candidates": [],
     }
 

@@ -87,7 +87,7 @@ def _causes(result: Entry) -> list[str]:
 
 def parameter_rows(stages: Sequence[Entry], note: str = "") -> list[dict[str, Any]]:
     """One row per parameter of the last stage, the joint's three first, and how far each moved since the first; a ``note`` stands
-    beside every interval."""
+    in place of every interval that would hold only if the model were right."""
     if not stages:
         return []
     last, first = parameters_of(stages[-1]), parameters_of(stages[0])
@@ -110,7 +110,7 @@ def parameter_rows(stages: Sequence[Entry], note: str = "") -> list[dict[str, An
 
 
 def _noted(interval: str, note: str) -> str:
-    return f"{interval} ({note})" if note and interval and interval != UNKNOWN else interval
+    return f"none: it would hold {note}" if note and interval and interval != UNKNOWN else interval
 
 
 def stage_rows(stages: Sequence[Entry], record: Entry) -> list[dict[str, Any]]:
