@@ -130,7 +130,8 @@ class SteppedSine(AbstractSignal):
 
 
 class Sampled(AbstractExcitation):
-    """A measured drive on a uniform grid: values and rates at the samples, cubic in between (Hermite).
+    """A measured drive on a uniform grid: values and rates at the samples, cubic in between (Hermite); a force whose rate is not
+    known is straight.
 
     Attributes: ``t0`` time of the first sample and ``dt`` spacing [s]; ``x``, ``dx``, ``force`` of one length, and
     ``dforce`` where the rate of the force is known. Rates come from a smoothing spline (`jaxbacklash.signals.smoothing`),
@@ -149,10 +150,16 @@ class Sampled(AbstractExcitation):
         position = (t - self.t0) / self.dt
         k = jnp.clip(jnp.floor(position).astype(int), 0, self.x.shape[0] - 2)
         s = position - k
-        a, b, c, d = self.x[k], self.dt * self.dx[k], self.x[k + 1], self.dt * self.dx[k + 1]
+        x, dx = self._curve(self.x, self.dx, k, s)
+        if self.dforce is None:
+            return Drive(x, dx, (1.0 - s) * self.force[k] + s * self.force[k + 1])
+        return Drive(x, dx, *self._curve(self.force, self.dforce, k, s))
+
+    def _curve(self, value: Array, rate: Array, k: Any, s: Scalar) -> tuple[Scalar, Scalar]:
+        """Value and rate a share ``s`` of the spacing behind sample ``k``."""
+        a, b, c, d = value[k], self.dt * rate[k], value[k + 1], self.dt * rate[k + 1]
         c2, c3 = 3.0 * (c - a) - 2.0 * b - d, b + d - 2.0 * (c - a)
-        x, dx = a + s * (b + s * (c2 + s * c3)), (b + s * (2.0 * c2 + 3.0 * s * c3)) / self.dt
-        return Drive(x, dx, (1.0 - s) * self.force[k] + s * self.force[k + 1])
+        return a + s * (b + s * (c2 + s * c3)), (b + s * (2.0 * c2 + 3.0 * s * c3)) / self.dt
 
 
 class Panelled(Sampled):

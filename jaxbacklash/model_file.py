@@ -16,6 +16,7 @@ from .effects import Contact, Damper, Spring
 from .errors import BadInput
 from .mechanics import AbstractEffect, canonical_name, catalogue
 from .parameters import specs, unit_text
+from .records.force import BETWEEN
 from .system import System
 
 OBSERVED = ("z", "y", "T")
@@ -25,8 +26,14 @@ LARGEST = 50_000_000
 """Bytes of a model file at most; a learned torque of a fine table takes some."""
 
 
-def dump_model(system: System, *, translational: bool = False, per_inertia: bool = False, heading: str = "") -> str:
-    """The text of a model file; units stand beside the values as comments."""
+def dump_model(
+    system: System, *, translational: bool = False, per_inertia: bool = False, heading: str = "", between: str | None = None
+) -> str:
+    """The text of a model file; units stand beside the values as comments.
+
+    ``between`` tells how the force of the fitted record was taken to go on between its samples, one of
+    `jaxbacklash.records.force.BETWEEN`, for `simulate` to do the same; None: there was no force.
+    """
 
     def entry(name: str, value: Any, unit: str) -> str:
         text = unit_text(unit, translational=translational, per_inertia=per_inertia)
@@ -39,6 +46,8 @@ def dump_model(system: System, *, translational: bool = False, per_inertia: bool
     for part in (system.contact, system.damper):
         if part is not None:
             lines += [entry(f.name, getattr(part, f.name), f.metadata["spec"].unit) for f in fields(part)]
+    if between is not None:
+        lines += ["", "[input]", f"force = {_quoted(between)}  # between its samples: {', '.join(BETWEEN)}"]
     for name in sorted(system.effects):
         effect = system.effects[name]
         lines += ["", f"[effects.{_key(name)}]"]
@@ -56,6 +65,36 @@ def load_model(path: str | Path) -> System:
     BadInput
         A file that is missing or not TOML, an unknown or missing entry, a value that is no number or out of bounds.
     """
+    data, where = _read(path)
+    return _build(data, where)
+
+
+def input_between(path: str | Path) -> str | None:
+    """How a model file says that a force goes on between its samples, one of `jaxbacklash.records.force.BETWEEN`, or None.
+
+    Raises
+    ------
+    BadInput
+        As `load_model`.
+    """
+    return _between(*_read(path))
+
+
+def _between(data: dict[str, Any], where: str) -> str | None:
+    told = data.get("input", {})
+    if not isinstance(told, dict):
+        raise BadInput(f"{where}: input is not a table, wanted [input] with force")
+    stray = sorted(set(told) - {"force"})
+    if stray:
+        raise BadInput(f"{where}: [input] has an entry {stray[0]}, wanted only force")
+    between = told.get("force")
+    if between is not None and between not in BETWEEN:
+        raise BadInput(f"{where}: [input] force is {_cut(repr(between))}, wanted one of {', '.join(BETWEEN)}")
+    return between
+
+
+def _read(path: str | Path) -> tuple[dict[str, Any], str]:
+    """What a model file holds, and its name as it is told."""
     where = _shown(str(path))
     try:
         state = Path(path).stat()
@@ -76,16 +115,17 @@ def load_model(path: str | Path) -> System:
         if isinstance(error, BadInput):
             raise
         raise BadInput(f"{where}: not a model file: {str(error).splitlines()[0]}, wanted TOML with a [model] table") from None
-    return _build(data, where)
+    return data, where
 
 
 def _build(data: dict[str, Any], where: str) -> System:
     model = data.get("model")
     if not isinstance(model, dict):
         raise BadInput(f"{where}: found no [model] table, wanted one with inertia, stiffness, damping and, with play, backlash")
-    stray = sorted(set(data) - {"model", "effects"})
+    stray = sorted(set(data) - {"model", "input", "effects"})
     if stray:
-        raise BadInput(f"{where}: found a table [{stray[0]}], wanted [model] and [effects.NAME] only")
+        raise BadInput(f"{where}: found a table [{stray[0]}], wanted [model], [input] and [effects.NAME] only")
+    _between(data, where)
     values = dict(model)
     observed = values.pop("observed", "z")
     if observed not in OBSERVED:

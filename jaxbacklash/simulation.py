@@ -26,6 +26,8 @@ LONG = 60_000
 """Panels of a run from which on it is computed in pieces."""
 PIECE = 8192
 """Panels in such a piece."""
+ROUGH_PANELS = 8
+"""Straight lines a sample that stand for a force that is held or curved, unless said."""
 MOST_FINER = 16
 """A play is followed by panels so many times shorter than usual, and no more: a tiny one is hardly felt."""
 
@@ -143,7 +145,8 @@ def crossing_panels(system: System, drive: AbstractExcitation, times: Array, sta
     fastest = float(np.max(np.abs(speeds), initial=0.0, where=np.isfinite(speeds)))
     if not (float(play) > 0.0 and fastest > 0.0):
         return every
-    return int(min(max(every, np.ceil(fastest / (rate * float(play)))), MOST_FINER * every))
+    # A multiple, so that what drives is read at the same places.
+    return every * int(min(max(1, np.ceil(fastest / (rate * float(play) * every))), MOST_FINER))
 
 
 def _in_pieces(args: Driven, state: Any, dt: Any, intervals: int, every: int, located: bool) -> Any:
@@ -186,19 +189,36 @@ def _adaptive(args: Driven, state: Any, dt: Any, samples: int, rtol: float, atol
     return args.t0 + times, solution.ys
 
 
-def measured_base(record: Record) -> Sampled:
-    """The measured drive of a record as an excitation: base motion through its smoothing spline, force by straight lines."""
-    # scipy's splines load a sixth of a second, for which a map need not wait
-    from .signals import choose_intervals, fit_spline, span
+def measured_base(record: Record, *, between: str | None = None, panels: int = ROUGH_PANELS) -> Sampled:
+    """The measured drive of a record as an excitation, going on between its samples as a fit takes it.
 
-    x = dx = np.zeros(record.samples)
-    if "x" in record.channels:
-        values = record.channels["x"]
+    Base motion and a smooth force go along their smoothing splines; of a rough force `jaxbacklash.records.force.way` decides.
+
+    Parameters
+    ----------
+    record : what was measured
+    between : how a model says that a rough force goes on; None asks the record
+    panels : straight lines a sample that stand for a force that is held or curved, best as many as the simulation has panels
+    """
+    # scipy's splines load a sixth of a second, for which a map need not wait
+    from .records.force import way
+    from .signals import choose_intervals, edges_between, fit_spline, span
+
+    def smooth(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         spacing = span(record.dt) / choose_intervals(record.t, values, span(record.dt))
         spline = fit_spline(record.t, values, record.t[0], spacing)
-        x, dx = spline(record.t), spline(record.t, 1)
-    force = record.channels.get("F", np.zeros(record.samples))
-    return Sampled(jnp.asarray(record.t[0]), jnp.asarray(record.dt), *(jnp.asarray(a) for a in (x, dx, force)))
+        return spline(record.t), spline(record.t, 1)
+
+    zero, dt, rate = np.zeros(record.samples), record.dt, None
+    x, dx = smooth(record.channels["x"]) if "x" in record.channels else (zero, zero)
+    force, how = record.channels.get("F", zero), way(record, between)
+    if how == "smooth":
+        force, rate = smooth(force)
+    elif how != "straight":  # at a base at rest
+        force, dt = edges_between(force, panels, how), dt / panels
+        x = dx = np.zeros(force.size)
+    a = jnp.asarray
+    return Sampled(a(record.t[0]), a(dt), a(x), a(dx), a(force), None if rate is None else a(rate))
 
 
 def as_record(trajectory: Trajectory, system: System, *, path: str = "") -> Record:

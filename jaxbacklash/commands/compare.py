@@ -9,6 +9,7 @@ from pathlib import Path
 from .. import __version__
 from ..fitting import compare as compare_records
 from ..model_file import dump_model, load_model
+from ..records.force import between
 from ..report.result import comparison_json
 from .common import check_window, json_text, out_folder, progress, write_text
 from .reading import Reading
@@ -39,7 +40,7 @@ def run(
 
             tell("drawing the report", 0.8)
             write_text(folder / "result.json", json_text(result))
-            write_text(folder / "model.toml", dump_model(system, translational=translational))
+            write_text(folder / "model.toml", dump_model(system, translational=translational, between=between([record])))
             compare_report(found, result, folder / "report.html")
     if as_json:
         sys.stdout.write(json_text(result))

@@ -18,6 +18,7 @@ from ..fitting import fit as fit_records
 from ..fitting.result import causes_text
 from ..fitting.setup import add_effects
 from ..model_file import dump_model
+from ..records.force import between
 from ..report.refine_result import candidates_json
 from ..report.result import as_json as result_of
 from .common import check_window, json_text, model_of_file, names, out_folder, progress, write_text
@@ -67,7 +68,10 @@ def run(
             heading = f"{record.summary()}\n{found.sentences[0]}"
             write_text(
                 folder / "model.toml",
-                dump_model(fit.system, translational=translational, per_inertia=fit.per_inertia, heading=heading),
+                dump_model(
+                    fit.system, translational=translational, per_inertia=fit.per_inertia, heading=heading,
+                    between=between([record]),
+                ),
             )
             diagnose_report(fit, found, result, folder / "report.html")
     if as_json:

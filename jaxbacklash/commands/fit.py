@@ -16,6 +16,7 @@ from ..fitting import fit as fit_records
 from ..fitting.result import text as fit_text
 from ..fitting.setup import add_effects
 from ..model_file import dump_model
+from ..records.force import between
 from ..report.result import as_json as result_of
 from .common import check_window, json_text, model_of_file, names, out_folder, progress, write_text
 from .heldout import check_heldout
@@ -72,7 +73,10 @@ def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, *, silent
         heading = f"{found.records[0].summary()}\n{result['verdict_text']}"
         write_text(
             folder / "model.toml",
-            dump_model(found.system, translational=found.translational, per_inertia=found.per_inertia, heading=heading),
+            dump_model(
+                found.system, translational=found.translational, per_inertia=found.per_inertia, heading=heading,
+                between=between(found.records),
+            ),
         )
         fit_report(found, result, folder / "report.html")
     if machine:

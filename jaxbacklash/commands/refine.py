@@ -17,6 +17,7 @@ from ..criticism.causes_first import causes_first, told
 from ..criticism.ranking import plain
 from ..errors import NoAnswer
 from ..model_file import dump_model
+from ..records.force import between
 from ..report.refine_result import other_methods, refinement_json
 from ..system import System
 from .common import check_window, json_text, model_of_file, out_folder, progress, write_text
@@ -108,7 +109,9 @@ def _write(
     """The files of a refinement, by name; ``base`` will tell where the base model fails, None where ``last`` tells it."""
     fit = found.fit
     write_text(folder / "result.json", json_text(result))
-    about = {"translational": fit.translational, "per_inertia": fit.per_inertia}
+    about: dict[str, Any] = {
+        "translational": fit.translational, "per_inertia": fit.per_inertia, "between": between(fit.records)
+    }  # fmt: skip
     title = f"{fit.records[0].summary()}\n{result['verdict_text']}"
     write_text(folder / "model.toml", dump_model(fit.system, heading=title, **about))
     written = ["result.json", "model.toml", "report.html"]

@@ -10,9 +10,10 @@ import numpy as np
 
 from ..errors import BadInput, NoAnswer
 from ..excitation import AbstractExcitation, Chirp, Harmonic, Multisine, Rest, Sampled, SteppedSine
-from ..model_file import load_model
-from ..records import read_record, write_record
+from ..model_file import input_between, load_model
+from ..records import Record, read_record, write_record
 from ..records.checks import MIN_SAMPLES, MIN_SECONDS
+from ..records.force import SAID, way
 from ..records.writer import WRITERS
 from ..simulation import as_record, default_panels, measured_base
 from ..simulation import simulate as run_system
@@ -61,7 +62,13 @@ def run(
         raise BadInput(f"--out {out}: found the suffix {out.suffix!r}, wanted one of {', '.join(WRITERS)}")
     system = load_model(model)
     rng = np.random.default_rng(seed)
-    drive, t0, duration = parse_excitation(excitation, as_force, duration, rng)
+    measured = _measured(excitation)
+    if measured is None:
+        drive, t0 = parse_excitation(excitation, as_force, duration, rng), 0.0
+    else:
+        between = input_between(model)
+        drive = measured_base(measured, between=between, panels=default_panels(system, measured.rate_hz))
+        t0, duration = float(measured.t[0]), float(measured.t[-1] - measured.t[0])
     check_size(system, drive, duration, rate)
     path = run_system(system, drive, duration=duration, rate=rate, y0=y0, dy0=dy0, t0=t0)
     largest = float(np.max(np.abs(np.asarray(path.observed))))
@@ -71,6 +78,11 @@ def run(
             f"one that steps of {1000.0 / rate:.3g} ms can follow (--rate)?"
         )
     record = as_record(path, system, path=str(out))
+    if measured is not None and (how := way(measured, between)) in SAID:
+        # Lines stood for the force between its samples; what a logger shows are the samples.
+        at = (record.t - t0) / measured.dt
+        at = np.floor(at + 1e-6) if how == "held" else at
+        record = record.replace(F=np.interp(at, np.arange(measured.samples), measured.channels["F"]))
     if noise:
         moved = {
             name: values + noise * rng.standard_normal(values.size)
@@ -107,10 +119,24 @@ def check_size(system: System, drive: AbstractExcitation, duration: float, rate:
         bounded(where, panels * lines, MOST_SINES, "values of sines", "shorten --duration or take fewer lines")
 
 
-def parse_excitation(
-    text: str, as_force: bool, duration: float, rng: np.random.Generator
-) -> tuple[AbstractExcitation, float, float]:
-    """The excitation that ``--excitation`` names, its start time and the duration to simulate [s].
+def _measured(text: str) -> Record | None:
+    """The record that ``--excitation`` names, None where it names none.
+
+    Raises
+    ------
+    BadInput
+        The record has nothing to drive with, or cannot be read.
+    """
+    if text.partition(":")[0] in WANTED or not Path(text).suffix:
+        return None
+    record = read_record(text)
+    if record.input_name is None:
+        raise BadInput(f"--excitation {text}: the record has neither x nor F to drive with")
+    return record
+
+
+def parse_excitation(text: str, as_force: bool, duration: float, rng: np.random.Generator) -> AbstractExcitation:
+    """The excitation that ``--excitation`` spells out, over a ``duration`` [s].
 
     Raises
     ------
@@ -119,11 +145,6 @@ def parse_excitation(
     """
     kind, _, rest = text.partition(":")
     if kind not in WANTED:
-        if Path(text).suffix:
-            record = read_record(text)
-            if record.input_name is None:
-                raise BadInput(f"--excitation {text}: the record has neither x nor F to drive with")
-            return measured_base(record), float(record.t[0]), float(record.t[-1] - record.t[0])
         raise BadInput(f"--excitation {text}: wanted {', '.join(WANTED)} or the file of a record")
     given: dict[str, float] = dict(OPTIONAL.get(kind, {}))
     for part in filter(None, rest.split(",")):
@@ -140,7 +161,7 @@ def parse_excitation(
     missing = [name for name in WANTED[kind] if name not in given]
     if missing:
         raise BadInput(f"--excitation {kind}: {missing[0]} is missing, wanted {kind}:" + ",".join(f"{n}=" for n in WANTED[kind]))
-    return _build(kind, given, as_force, duration, rng), 0.0, duration
+    return _build(kind, given, as_force, duration, rng)
 
 
 def _build(kind: str, p: dict[str, float], as_force: bool, duration: float, rng: np.random.Generator) -> AbstractExcitation:

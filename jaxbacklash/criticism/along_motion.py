@@ -10,10 +10,10 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..compiled import kept_jit
-from ..fitting.force import force_edges
 from ..mechanics import AbstractEffect, Drive, canonical_name
 from ..parameters import ravel, unravel
 from ..records import Record
+from ..records.force import force_edges
 from ..signals import choose_intervals, fit_spline, span
 from ..system import System
 

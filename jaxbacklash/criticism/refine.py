@@ -17,7 +17,6 @@ from ..fitting.counts import few_counts
 from ..fitting.equation_error import Start
 from ..fitting.estimates import judge
 from ..fitting.fit import ABSOLUTE, prepare
-from ..fitting.force import tell_way
 from ..fitting.left_over import why_open
 from ..fitting.problem import Problem, Unknowns
 from ..fitting.result import Fit
@@ -28,6 +27,7 @@ from ..fitting.size import check_size
 from ..fitting.windows import Windows
 from ..precision import require_double_precision
 from ..records import Record, oriented
+from ..records.force import tell_way
 from ..system import System
 from .bounded import bounded
 from .either import either

@@ -60,14 +60,21 @@ def course(drive: AbstractExcitation, duration: float) -> Course | str:
 
 def _through_samples(drive: Sampled) -> Course:
     x, dx, force = (np.asarray(a, dtype=float) for a in (drive.x, drive.dx, drive.force))
-    a, b, c, d = x[:-1], float(drive.dt) * dx[:-1], x[1:], float(drive.dt) * dx[1:]
-    nothing = 0.0 * a
-    cubic = np.stack([a, b, 3.0 * (c - a) - 2.0 * b - d, b + d - 2.0 * (c - a), nothing, nothing], axis=1)
-    straight = np.stack([force[:-1], force[1:] - force[:-1], *(nothing,) * 4], axis=1)
+    cubic = _cubic(x, float(drive.dt) * dx)
+    if drive.dforce is None:
+        along = np.stack([force[:-1], force[1:] - force[:-1], *(0.0 * force[:-1],) * 4], axis=1)
+    else:
+        along = _cubic(force, float(drive.dt) * np.asarray(drive.dforce, dtype=float))
     # Lengths come in powers of two, so that records of other lengths run the same program; no run reaches what is filled in.
-    filled = ((0, (1 << (len(a) - 1).bit_length()) - len(a)), (0, 0))
-    moved, pushed = (jnp.asarray(np.pad(part, filled)) for part in (cubic, straight))
+    filled = ((0, (1 << (len(cubic) - 1).bit_length()) - len(cubic)), (0, 0))
+    moved, pushed = (jnp.asarray(np.pad(part, filled)) for part in (cubic, along))
     return Course(jnp.asarray(drive.t0, dtype=float), jnp.asarray(drive.dt, dtype=float), moved, pushed)
+
+
+def _cubic(value: np.ndarray, rate: np.ndarray) -> np.ndarray:
+    """Coefficients (K, 6) of the cubics on 0 ... 1 through values and rates at K + 1 samples."""
+    a, b, c, d = value[:-1], rate[:-1], value[1:], rate[1:]
+    return np.stack([a, b, 3.0 * (c - a) - 2.0 * b - d, b + d - 2.0 * (c - a), 0.0 * a, 0.0 * a], axis=1)
 
 
 def _through_knots(drive: AbstractSignal, duration: float) -> Course | str:

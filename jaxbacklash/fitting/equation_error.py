@@ -19,8 +19,8 @@ from scipy import optimize
 from ..mechanics import AbstractEffect, Instant
 from ..pointwise import exerted
 from ..records import Record
+from ..records.force import force_edges
 from ..signals import Bump, choose_intervals, fit_spline, span
-from .force import force_edges
 
 
 @dataclass(frozen=True)

@@ -15,12 +15,12 @@ from ..mechanics import AbstractEffect
 from ..parameters import values, with_values
 from ..precision import require_double_precision
 from ..records import Record, oriented
+from ..records.force import tell_way
 from ..system import System
 from .answers import check_answers
 from .chance import explains
 from .equation_error import Start
 from .estimates import UNDETERMINED, Estimate, judge
-from .force import tell_way
 from .hard import SHORTEST, SUSPECT, contact_samples, harder, most_play, travel_in_contact
 from .held import held as is_held
 from .left_over import EXPLAINED, quieter_elsewhere, settle_noise, why_open

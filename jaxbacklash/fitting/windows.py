@@ -18,10 +18,10 @@ from scipy.interpolate import BSpline
 
 from ..errors import BadInput
 from ..records import Record
+from ..records.force import force_edges, way
 from ..sharing import sharing
-from ..signals import DEGREE, NEGLIGIBLE, choose_intervals, fit_spline, is_smooth, knots, noise_level, noise_of_differences
+from ..signals import DEGREE, NEGLIGIBLE, choose_intervals, fit_spline, knots, noise_level, noise_of_differences
 from .chunks import CHUNK
-from .force import force_edges
 from .lengths import LONGEST_PANEL, SHOOTING_WINDOW
 
 Array = Any
@@ -139,7 +139,7 @@ def cut(
     dt = lead.dt
     length = max(8, round(window / dt))
     every = max(1, int(np.ceil(dt / longest_panel - 1e-9)))
-    driver = _driver(records, length * dt)
+    driver = _driver(records)
     intervals = 0
     needed = 0
     if driver is not None:
@@ -177,11 +177,11 @@ def cut(
     return windows, layout
 
 
-def _driver(records: Sequence[Record], window: float) -> str | None:
+def _driver(records: Sequence[Record]) -> str | None:
     """The measured input that gets a spline and shares in the misfit: base motion, or a force where it is smooth."""
     if "x" in records[0].channels:
         return "x"
-    if "F" in records[0].channels and all(is_smooth(r.t, r.channels["F"], window) for r in records):
+    if "F" in records[0].channels and all(way(r) == "smooth" for r in records):
         return "F"
     return None
 
