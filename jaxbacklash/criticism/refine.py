@@ -15,8 +15,9 @@ from ..fitting.answers import check_answers
 from ..fitting.chance import explains
 from ..fitting.counts import few_counts
 from ..fitting.equation_error import Start
-from ..fitting.estimates import judge
+from ..fitting.estimates import inflation, judge
 from ..fitting.fit import ABSOLUTE, prepare
+from ..fitting.held import correlation
 from ..fitting.left_over import why_open
 from ..fitting.problem import Problem, Unknowns
 from ..fitting.result import Fit
@@ -157,9 +158,10 @@ class _Judge:
         held = None if self.heldout is None else self._predict(problem)
         q = len(free)
         scales = trial.scales[:q]
-        excess = max(1.0, trial.misfit**2)
-        if bench.grips(trial.names) and not adequate(trial):
-            excess *= trial.correlation  # the misfit of one run is of one piece
+        runs = bench.grips(trial.names) and not adequate(trial)
+        left = scored[0].residual
+        pieces = correlation(left, np.ones(left.size)) if runs else 1.0
+        excess = inflation(trial.misfit, scored[0].rms, tied=trial.tied, correlation=pieces)
         covariance = excess * inverse_information(trial.schur[:q, :q]) * np.outer(scales, scales)
         stderr = dict(zip(free, np.sqrt(np.maximum(np.diag(covariance), 0.0))))
         plain = pruned(trial)

@@ -65,6 +65,20 @@ class Estimate:
         return found
 
 
+def inflation(misfit: float, error: float, *, tied: bool, correlation: float = 1.0) -> float:
+    """By how much variances exceed what the noise alone makes of them, at least 1: the one way to an interval of every command.
+
+    Parameters
+    ----------
+    misfit : root of the reduced chi-square where the fit has ended
+    error : prediction error of the windows that are quoted, in units of the noise. Where windows are free, each takes in by its
+        own start most of what the model lacks, and the longer ones that are quoted show what that hides
+    tied : whether the fit is one trajectory, of which the misfit tells all
+    correlation : how many samples of the residual count for one, where they are of one piece
+    """
+    return max(1.0, misfit**2) * correlation if tied else max(1.0, error**2)
+
+
 @dataclass(frozen=True)
 class Contacts:
     """How often the record meets the edges of the play: shares of samples above and below, and the largest |z| [rad]."""

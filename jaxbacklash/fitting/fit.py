@@ -20,7 +20,7 @@ from ..system import System
 from .answers import check_answers
 from .chance import explains
 from .equation_error import Start
-from .estimates import UNDETERMINED, Estimate, judge
+from .estimates import UNDETERMINED, Estimate, inflation, judge
 from .hard import SHORTEST, SUSPECT, contact_samples, harder, most_play, travel_in_contact
 from .held import held as is_held
 from .left_over import EXPLAINED, quieter_elsewhere, settle_noise, why_open
@@ -118,7 +118,7 @@ def fit(
     held = predict_record(fitted, heldout, window=window, free=names, known=known) if heldout is not None else None
     clock["score"] = time.perf_counter()
 
-    excess = max(1.0, scored[0].rms**2) if not found.tied else 1.0
+    excess = inflation(misfit(found), scored[0].rms, tied=found.tied, correlation=found.correlation)
     covariance = excess * found.covariance
     stderr = dict(zip(names, np.sqrt(np.diag(covariance))))
     per_inertia = inertia is None and chosen[0].kind not in ABSOLUTE

@@ -42,7 +42,8 @@ def silent(stage: str, share: float) -> None:
 
 @dataclass(frozen=True)
 class Found:
-    """Where a search ended; ``covariance`` (q, q) in the parameters' own units."""
+    """Where a search ended; ``covariance`` (q, q) in the parameters' own units, of the noise alone; ``correlation`` how many
+    samples of the residual count for one, told of runs in one piece that the model does not explain."""
 
     problem: Problem
     unknowns: Unknowns
@@ -52,6 +53,7 @@ class Found:
     tried: int
     tied: bool
     steps: int
+    correlation: float = 1.0
 
     def again(self, problem: Problem) -> Found:
         """The search gone on with from where it ended, for the same problem with other weights."""
@@ -184,13 +186,11 @@ def _search_held(
         if after < cost:
             tied, unknowns, seen, cost, steps = joined, solution.value, solution.stats, after, steps + taken
         adequate = np.sqrt(2.0 * cost / count) < ADEQUATE
-    excess = 1.0
-    if not adequate:
-        residual = np.asarray(seen["predicted"].motion) - np.asarray(w.measured)
-        excess = 2.0 * cost / count * correlation(residual, np.asarray(w.weight))
+    residual = np.asarray(seen["predicted"].motion) - np.asarray(w.measured)
+    pieces = 1.0 if adequate else correlation(residual, np.asarray(w.weight))
     scale = np.sum(np.asarray(problem.directions), axis=0)
-    covariance = excess * inverse_information(np.asarray(seen["schur"])) * np.outer(scale, scale)
-    return Found(tied, unknowns, covariance, cost, agreeing, len(tried), True, steps)
+    covariance = inverse_information(np.asarray(seen["schur"])) * np.outer(scale, scale)
+    return Found(tied, unknowns, covariance, cost, agreeing, len(tried), True, steps, pieces)
 
 
 def tie_windows(
