@@ -1,11 +1,10 @@
 """Noise that a model shows to be smaller than estimated, and what that says of another record of the same joint."""
 
-from types import SimpleNamespace
-
 import pytest
 
 from jaxbacklash.criticism.refine import _Judge
 from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.fitting.left_over import quieter_elsewhere
 from jaxbacklash.fitting.setup import base_system
 from tests.hidden import hidden
 
@@ -22,8 +21,7 @@ from tests.hidden import hidden
     ],
 )
 def test_another_records_noise_is_taken_for_less_only_as_far_as_this_ones(factor, here, there, taken):
-    bench = SimpleNamespace(noise_factor=factor, layout=SimpleNamespace(noise=(here,)))
-    assert Workbench.quieter_elsewhere(bench, there) == pytest.approx(taken, rel=0.01)
+    assert quieter_elsewhere(there, factor, here) == pytest.approx(taken, rel=0.01)
 
 
 def test_a_held_out_record_whose_noise_was_right_is_predicted_to_it():

@@ -18,12 +18,12 @@ from ..fitting.equation_error import Start
 from ..fitting.estimates import inflation, judge
 from ..fitting.fit import ABSOLUTE, prepare
 from ..fitting.held import correlation
-from ..fitting.left_over import why_open
+from ..fitting.left_over import predict, why_open
 from ..fitting.problem import Problem, Unknowns
 from ..fitting.result import Fit
-from ..fitting.score import Score, score
+from ..fitting.score import Score
 from ..fitting.search import TIES, inverse_information, silent
-from ..fitting.setup import base_system, first_guess, free_names
+from ..fitting.setup import base_system, free_names
 from ..fitting.size import check_size
 from ..fitting.windows import Windows
 from ..precision import require_double_precision
@@ -152,9 +152,7 @@ class _Judge:
         bench = self.bench
         problem, free = bench.problem(bench.effects(trial), trial.system)
         still = Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
-        # A window whose error is quoted is one trajectory, wherever the search was cut.
-        whole = eqx.tree_at(lambda p: p.windows.tie, problem, bench.ties)
-        scored, _ = score(whole, still, bench.layout, group=bench.group, through=bool(bench.outright))
+        scored = (bench.scored(trial),)
         held = None if self.heldout is None else self._predict(problem)
         q = len(free)
         scales = trial.scales[:q]
@@ -174,14 +172,12 @@ class _Judge:
         return Fit(
             plain, free, estimates, scored, held, records, bench.layout.noise, bench.layout.input_noise, covariance, 0, 0,
             trial.tied, trial.cost, trial.steps, self.start, self.model, self.per_inertia, self.translational, {}, joined, still,
-            (why_open(bench.record, bench.layout.noise[0], scored[0]),),
+            (why_open(bench.record, bench.layout.noise[0], scored[0]),), (bench.layout.noise[0] / bench.noise_factor,),
         )  # fmt: skip
 
     def _predict(self, problem: Problem) -> Score:
         assert self.heldout is not None
         bench = self.bench
-        windows, layout, group = prepare(bench.pace, [self.heldout], bench.window, intervals=bench.windows.intervals)
-        if (factor := bench.quieter_elsewhere(layout.noise[0])) != 1.0:
-            windows = windows.noisier(factor)
-        other = eqx.tree_at(lambda p: p.windows, problem, windows)
-        return score(other, first_guess(other), layout, group=group, through=bool(bench.outright))[0][0]
+        prepared = prepare(bench.pace, [self.heldout], bench.window, intervals=bench.windows.intervals)
+        known = bench.noise_factor, bench.layout.noise[0]
+        return predict(lambda windows: eqx.tree_at(lambda p: p.windows, problem, windows), prepared, self.heldout, known)[0]

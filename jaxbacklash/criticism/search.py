@@ -81,8 +81,8 @@ class Search(Unseen):
         steps = self.path = [Step(self.base(), None, (), ())]
         steps = self.path = self.forward(steps[0].trial, steps, MUCH)
         final = steps[-1].trial
-        if noise_too_large(final):
-            self.bench.quieter(final.misfit)
+        if noise_too_large(final) and (factor := self.bench.too_loud(final)) != 1.0:
+            self.bench.quieter(factor)
             self.known.clear()
             return self.run()
         if not explained(final) or self.glimpsed(self.trim(steps)[-1].trial):

@@ -17,9 +17,10 @@ import numpy as np
 from ..fitting.fit import prepare
 from ..fitting.handed_on import handed_on
 from ..fitting.held import held, search_held
-from ..fitting.left_over import quieter_elsewhere
+from ..fitting.left_over import quieter
 from ..fitting.levenberg import Levenberg, Minimum, minimise
 from ..fitting.problem import Problem, Unknowns
+from ..fitting.score import Score, begin_anew, score
 from ..fitting.search import ADEQUATE, LOOSE, NEAR, TIES, freedom, tie_windows
 from ..fitting.setup import first_guess, free_names, held_system, make_problem, read_through
 from ..fitting.softened import through_softened
@@ -260,9 +261,17 @@ class Workbench:
         self.windows = self.windows.noisier(factor)
         self.layout = replace(self.layout, noise=tuple(factor * n for n in self.layout.noise))
 
-    def quieter_elsewhere(self, noise: float) -> float:
-        """By which factor the ``noise`` estimated from another record of the same joint is to be taken."""
-        return quieter_elsewhere(noise, self.noise_factor, self.layout.noise[0])
+    def scored(self, trial: Trial) -> Score:
+        """What a model misses its record by, as every command tells it."""
+        problem, _ = self.problem(self.effects(trial), trial.system)
+        # A window whose error is quoted is one trajectory, wherever the search was cut.
+        whole = eqx.tree_at(lambda p: p.windows.tie, problem, self.ties)
+        begin = begin_anew(whole, np.zeros(problem.directions.shape[1]))
+        return score(whole, begin, self.layout, group=self.group)[0][0]
+
+    def too_loud(self, trial: Trial) -> float:
+        """By which factor the noise is to be taken beside a model, 1 where that leaves as much."""
+        return quieter(self.layout.noise, [self.scored(trial)], [self.record])[0]
 
     def cut(self, ties: np.ndarray) -> None:
         """Tie only those windows from now on that have a one in ``ties`` (W,); ``self.ties`` keeps what was tied before."""

@@ -11,11 +11,9 @@ from ..parameters import channel_unit
 from ..records import Record, oriented
 from ..system import System
 from .chance import near_noise
-from .fit import predict_record
-from .left_over import quieter
+from .fit import predict_with_noise
 from .score import Score, error_in_words
 from .size import check_size
-from .windows import observed_noise
 
 
 @dataclass(frozen=True)
@@ -50,8 +48,14 @@ class Comparison:
         return "\n".join([self.record.summary(), f"  noise of {name} {self.noise:.3g} {unit}", self.sentence()])
 
 
-def compare(system: System, record: Record, *, window: float | None = None, translational: bool = False) -> Comparison:
+def compare(
+    system: System, record: Record, *, window: float | None = None, translational: bool = False,
+    known: tuple[float, float] = (1.0, 0.0),
+) -> Comparison:  # fmt: skip
     """Predict a record window by window with a model's parameters as they are.
+
+    ``known`` is what the fit of the model has told of the noise: by which factor it was below what the samples alone said, and
+    its standard deviation (`Fit.known_noise`, in a model file ``[noise]``).
 
     Raises
     ------
@@ -71,16 +75,11 @@ def compare(system: System, record: Record, *, window: float | None = None, tran
             )
     record = oriented(record)
     check_size([record])
-    noise = observed_noise(record)
     with np.errstate(over="ignore", invalid="ignore"):  # a motion that grows without bound, which is told
-        seen = predict_record(system, record, window=window)
+        seen, noise = predict_with_noise(system, record, window=window, known=known)
     if not (np.isfinite(seen.rms) and np.isfinite(seen.median)):
         raise NoAnswer(
             f"{record.path}: within a window of {seen.length:.3g} s the model's motion grows without bound; are the signs of its "
             "effects right, and is its damping one that this record's rate can follow?"
         )
-    factor = quieter([noise], [seen], [record])[0]
-    if factor != 1.0:  # what a model predicts was no noise
-        noise *= factor
-        seen = predict_record(system, record, window=window, known=(factor, noise))
     return Comparison(system, record, seen, noise, translational)

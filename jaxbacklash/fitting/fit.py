@@ -23,13 +23,13 @@ from .equation_error import Start
 from .estimates import UNDETERMINED, Estimate, inflation, judge
 from .hard import SHORTEST, SUSPECT, contact_samples, harder, most_play, travel_in_contact
 from .held import held as is_held
-from .left_over import EXPLAINED, quieter_elsewhere, settle_noise, why_open
+from .left_over import EXPLAINED, predict, settle_noise, why_open
 from .lengths import PANELS, longest_panel, score_window, shooting_window
 from .profile import with_profiles
 from .result import Fit
-from .score import Score, score
+from .score import Score, begin_anew, score
 from .search import Found, misfit, search, silent
-from .setup import base_system, first_guess, free_names, make_problem
+from .setup import base_system, free_names, make_problem
 from .size import check_size
 from .windows import Layout, Windows, crossing_time, cut
 
@@ -94,7 +94,7 @@ def fit(
         names, model = free_names(system), "given"
     names = tuple(free) if free is not None else names
     windows, layout, group = prepare(system, chosen, window)
-    first_noise = layout.noise[0]
+    alone = layout.noise
     clock["cut"] = time.perf_counter()
 
     found = search(system, windows, names, starts=starts, seed=seed, rough=start is None, progress=progress)
@@ -106,7 +106,7 @@ def fit(
     problem, unknowns = found.problem, found.unknowns
     fitted = with_values(system, dict(zip(values(system), np.asarray(problem.parameters(unknowns.theta)))))
 
-    scored, _ = score(problem, unknowns, layout, group=group)
+    scored, _ = score(problem, begin_anew(problem, unknowns.theta), layout, group=group)
     if not is_held(system):
         settled = settle_noise(found, layout, scored, chosen, group)
         if settled.found is not found:
@@ -114,7 +114,7 @@ def fit(
             problem, unknowns = found.problem, found.unknowns
             fitted = with_values(system, dict(zip(values(system), np.asarray(problem.parameters(unknowns.theta)))))
     unknown_noise = tuple(why_open(*own) for own in zip(chosen, layout.noise, scored))
-    known = (layout.noise[0] / first_noise, layout.noise[0])
+    known = (layout.noise[0] / alone[0], layout.noise[0])
     held = predict_record(fitted, heldout, window=window, free=names, known=known) if heldout is not None else None
     clock["score"] = time.perf_counter()
 
@@ -135,7 +135,7 @@ def fit(
         fitted, names, estimates, scored, held, chosen, layout.noise, layout.input_noise, covariance,
         found.agreeing, found.tried, found.tied, found.cost, found.steps, start, model, per_inertia, translational,
         {name: at - before for (_, before), (name, at) in pairwise(marks)}, problem, unknowns,
-        unknown_noise,
+        unknown_noise, alone,
     )  # fmt: skip
 
 
@@ -219,10 +219,15 @@ def predict_record(
     ``known`` is what a fit to another record of the joint has told of the noise: by which factor it was below what the samples
     alone said, and its standard deviation.
     """
+    return predict_with_noise(system, record, window=window, free=free, known=known)[0]
+
+
+def predict_with_noise(
+    system: System, record: Record, *, window: float | None = None, free: Sequence[str] | None = None,
+    known: tuple[float, float] = (1.0, 0.0),
+) -> tuple[Score, float]:  # fmt: skip
+    """`predict_record`, and the standard deviation of the noise that the record is taken to have, in its unit."""
     require_double_precision("predict_record")
     record = oriented(record)
-    windows, layout, group = prepare(system, [record], window)
-    if (factor := quieter_elsewhere(layout.noise[0], *known)) != 1.0:
-        windows = windows.noisier(factor)
-    problem = make_problem(system, windows, free_names(system) if free is None else free)
-    return score(problem, first_guess(problem), layout, group=group)[0][0]
+    names = free_names(system) if free is None else free
+    return predict(lambda windows: make_problem(system, windows, names), prepare(system, [record], window), record, known)

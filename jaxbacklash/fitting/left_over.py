@@ -7,7 +7,7 @@ leaves, the fit is made again with it, and where no model explains the record it
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -16,14 +16,19 @@ import numpy as np
 
 from ..records import Record
 from ..signals import estimate_noise, rounding_noise
-from .score import Score, score
+from .problem import Problem
+from .score import Score, begin_anew, score
+from .setup import first_guess
 from .windows import Layout, Windows
 
 if TYPE_CHECKING:
     from .search import Found
 
-QUIETER = 0.93
-"""Prediction error, in units of the noise, below which the noise was taken for too large: chance makes 0.97 of 600 samples."""
+QUIETER, CHANCE = 0.97, 2.4
+"""Prediction error, in units of the noise, below which the noise was taken for too large; of a short record, so many standard
+deviations of what chance makes of its samples below 1, which is 0.93 of 600."""
+TOLD = 0.93
+"""Share of what the samples alone tell down to which a fit bears that out."""
 ROUNDS = 3
 """How often the noise is taken from the fit and the fit from the noise: the second time changes a few percent."""
 WHITE, SURE, LAGS = 0.2, 4.0, 3
@@ -43,7 +48,6 @@ def settle_noise(found: Found, layout: Layout, scored: Sequence[Score], records:
     records : the records, which tell how finely their values were written
     group : shooting windows per score window
     """
-    unknowns = found.unknowns
     for _ in range(ROUNDS):
         factors = quieter(layout.noise, scored, records)
         if all(f == 1.0 for f in factors):
@@ -51,8 +55,7 @@ def settle_noise(found: Found, layout: Layout, scored: Sequence[Score], records:
         layout = replace(layout, noise=tuple(f * n for f, n in zip(factors, layout.noise)))
         problem = eqx.tree_at(lambda p: p.windows, found.problem, _noisier(found.problem.windows, layout, factors))
         found = found.again(problem)
-        unknowns = found.unknowns
-        scored, _ = score(problem, unknowns, layout, group=group)
+        scored, _ = score(problem, begin_anew(problem, found.unknowns.theta), layout, group=group)
     return Settled(found, layout, tuple(scored))
 
 
@@ -66,12 +69,16 @@ class Settled:
 
 
 def quieter(noise: Sequence[float], scored: Sequence[Score], records: Sequence[Record]) -> list[float]:
-    """By which factor the noise of each record is too large, 1 where it is not: not below what rounding has left."""
+    """By which factor the noise of each record is to be taken, 1 where a model leaves as much: not below what rounding has left.
+
+    The one rule for all commands; ``scored`` is what the model misses by, in units of ``noise``.
+    """
     factors = []
     for own, seen, record in zip(noise, scored, records):
         least = rounding_noise(record.channels[record.observed_name]) / own
         factor = max(seen.rms, least)
-        factors.append(float(factor) if np.isfinite(factor) and 0.0 < factor < QUIETER else 1.0)
+        limit = min(QUIETER, 1.0 - CHANCE / np.sqrt(2.0 * record.samples))
+        factors.append(float(factor) if np.isfinite(factor) and 0.0 < factor < limit else 1.0)
     return factors
 
 
@@ -82,6 +89,34 @@ def quieter_elsewhere(noise: float, factor: float, found: float) -> float:
     what was ``found`` there.
     """
     return float(np.clip(found / max(noise, 1e-300), factor, 1.0))
+
+
+def predict(
+    make: Callable[[Windows], Problem], prepared: tuple[Windows, Layout, int], record: Record,
+    known: tuple[float, float] = (1.0, 0.0),
+) -> tuple[Score, float]:  # fmt: skip
+    """How a model with frozen parameters predicts a record of which nothing else is known, and the noise that is taken for it.
+
+    Parameters
+    ----------
+    make : the problem of these windows, with the model's parameters
+    prepared : the record's windows, where it sits among them, and how many make a score window
+    record : the record
+    known : what a fit to another record of the joint has told of the noise: by which factor it was below what the samples alone
+        said, and its standard deviation
+    """
+    windows, layout, group = prepared
+
+    def scored(factor: float) -> Score:
+        problem = make(windows if factor == 1.0 else windows.noisier(factor))
+        return score(problem, first_guess(problem), layout, group=group)[0][0]
+
+    factor = quieter_elsewhere(layout.noise[0], *known)
+    seen = scored(factor)
+    if (less := quieter([factor * layout.noise[0]], [seen], [record])[0]) != 1.0:  # what a model predicts was no noise
+        factor *= less
+        seen = scored(factor)
+    return seen, factor * layout.noise[0]
 
 
 def why_open(record: Record, noise: float, scored: Score) -> dict[str, str]:
@@ -101,7 +136,7 @@ def why_open(record: Record, noise: float, scored: Score) -> dict[str, str]:
     if name == "T":
         return found
     alone = estimate_noise(record.t, record.channels[name])
-    if alone.told and noise > QUIETER * alone.level:
+    if alone.told and noise > TOLD * alone.level:
         return found
     if scored.rms > EXPLAINED:
         found[name] = f"{name} {rough}, and the model does not explain them"

@@ -39,6 +39,8 @@ class Named(Protocol):
 class Fit:
     """A fitted model.
 
+    ``noise_alone``, per record, is what its samples alone told of the noise, before there was a model.
+
     Attributes: ``system`` with the fitted values; ``parameters`` the free ones, by name; ``scores`` one per record;
     ``heldout`` the score of a held-out record; ``noise`` and ``input_noise`` per record; ``covariance`` (q, q) in the order of
     ``free``; ``agreeing`` of ``tried`` starts reached the best minimum, none were tried where a search had a model to begin from;
@@ -69,6 +71,13 @@ class Fit:
     problem: Problem | None = field(default=None, repr=False)
     unknowns: Unknowns | None = field(default=None, repr=False)
     noise_open: tuple[dict[str, str], ...] = ()
+    noise_alone: tuple[float, ...] = ()
+
+    @property
+    def known_noise(self) -> tuple[float, float]:
+        """What the fit tells of the noise in other records of its joint: by which factor it is below what the samples of the
+        first record alone said, and its standard deviation."""
+        return (self.noise[0] / self.noise_alone[0] if self.noise_alone else 1.0), self.noise[0]
 
     @property
     def score(self) -> Score:

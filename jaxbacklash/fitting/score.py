@@ -13,11 +13,13 @@ import equinox as eqx
 import numpy as np
 
 from ..compiled import kept_jit
+from ..parameters import values, with_values
 from .handed_on import follows, handed_on
 from .led_on import led_on
 from .lengths import SCORE_WINDOW
 from .levenberg import Levenberg, Minimum, minimise
 from .problem import Problem, Unknowns
+from .setup import first_guess
 from .shooting import residuals
 from .windows import Layout
 
@@ -95,8 +97,17 @@ def frozen(problem: Problem, theta: Any) -> Problem:
     )
 
 
+def begin_anew(problem: Problem, theta: Any) -> Unknowns:
+    """Unknowns with starts from the data, as those of a record of which nothing else is known: where a score begins, so that a
+    model's error is the same whoever asks for it, whatever its fit has made of the windows."""
+    still = frozen(problem, theta)
+    system = with_values(problem.system, dict(zip(values(problem.system), np.asarray(still.base))))
+    guess = first_guess(eqx.tree_at(lambda p: p.system, still, system))
+    return Unknowns(np.asarray(theta), guess.starts, guess.coefficients)
+
+
 def score(
-    problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 2, through: bool = False
+    problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 2, through: bool | None = None
 ) -> tuple[tuple[Score, ...], Unknowns]:
     """Score the parameters of ``unknowns`` on all windows.
 
@@ -106,13 +117,14 @@ def score(
     unknowns : parameters to judge, and starts near the right ones
     layout : where each record sits
     group : shooting windows per score window
-    through : a record is one trajectory, not one anew in every score window: for a link that is not seen, whose free start would
-        hide what the model lacks
+    through : a record is one trajectory, not one anew in every score window; default for a link that is not seen, whose free
+        start would hide what the model lacks
 
     Returns
     -------
     one score per record, and the unknowns with the window starts re-estimated
     """
+    through = problem.system.observed == "T" if through is None else through
     still = frozen(problem, unknowns.theta)
     tie = np.asarray(problem.windows.tie).copy()
     for first, count in zip(layout.first, layout.windows):
