@@ -27,12 +27,15 @@ LARGEST = 50_000_000
 
 
 def dump_model(
-    system: System, *, translational: bool = False, per_inertia: bool = False, heading: str = "", between: str | None = None
-) -> str:
+    system: System, *, translational: bool = False, per_inertia: bool = False, heading: str = "",
+    between: str | None = None, known_noise: tuple[float, float] = (1.0, 0.0),
+) -> str:  # fmt: skip
     """The text of a model file; units stand beside the values as comments.
 
     ``between`` tells how the force of the fitted record was taken to go on between its samples, one of
     `jaxbacklash.records.force.BETWEEN`, for `simulate` to do the same; None: there was no force.
+    ``known_noise`` tells `compare` what the fit has found of the noise, where that is below what the samples alone said: by which
+    factor, and its standard deviation.
     """
 
     def entry(name: str, value: Any, unit: str) -> str:
@@ -48,6 +51,10 @@ def dump_model(
             lines += [entry(f.name, getattr(part, f.name), f.metadata["spec"].unit) for f in fields(part)]
     if between is not None:
         lines += ["", "[input]", f"force = {_quoted(between)}  # between its samples: {', '.join(BETWEEN)}"]
+    if known_noise[0] != 1.0:
+        unit = unit_text({"T": "N m"}.get(system.observed, "rad"), translational=translational, per_inertia=False)
+        lines += ["", "[noise]", f"factor = {_number(known_noise[0])}  # of what the samples alone said of it"]
+        lines.append(f"level = {_number(known_noise[1])}  # {unit}, standard deviation")
     for name in sorted(system.effects):
         effect = system.effects[name]
         lines += ["", f"[effects.{_key(name)}]"]
@@ -78,6 +85,33 @@ def input_between(path: str | Path) -> str | None:
         As `load_model`.
     """
     return _between(*_read(path))
+
+
+def noise_known(path: str | Path) -> tuple[float, float]:
+    """What a model file says of the noise of the record that it was fitted to.
+
+    Returns
+    -------
+    by which factor it was below what the samples alone said, and its standard deviation; (1, 0) where the file says nothing
+
+    Raises
+    ------
+    BadInput
+        As `load_model`.
+    """
+    return _noise(*_read(path))
+
+
+def _noise(data: dict[str, Any], where: str) -> tuple[float, float]:
+    told = data.get("noise")
+    if told is None:
+        return 1.0, 0.0
+    if not isinstance(told, dict) or set(told) != {"factor", "level"}:
+        raise BadInput(f"{where}: noise is {_cut(repr(told))}, wanted a table [noise] with factor and level")
+    factor, level = (_value(told[name], f"{where}: [noise] {name}") for name in ("factor", "level"))
+    if not (0.0 < factor <= 1.0 and level > 0.0):
+        raise BadInput(f"{where}: [noise] has factor {factor:g} and level {level:g}, wanted 0 < factor <= 1 and a positive level")
+    return factor, level
 
 
 def _between(data: dict[str, Any], where: str) -> str | None:
@@ -122,10 +156,11 @@ def _build(data: dict[str, Any], where: str) -> System:
     model = data.get("model")
     if not isinstance(model, dict):
         raise BadInput(f"{where}: found no [model] table, wanted one with inertia, stiffness, damping and, with play, backlash")
-    stray = sorted(set(data) - {"model", "input", "effects"})
+    stray = sorted(set(data) - {"model", "input", "noise", "effects"})
     if stray:
-        raise BadInput(f"{where}: found a table [{stray[0]}], wanted [model], [input] and [effects.NAME] only")
+        raise BadInput(f"{where}: found a table [{stray[0]}], wanted [model], [input], [noise] and [effects.NAME] only")
     _between(data, where)
+    _noise(data, where)
     values = dict(model)
     observed = values.pop("observed", "z")
     if observed not in OBSERVED:

@@ -1,5 +1,7 @@
 """The noise of a record, and what a model misses it by, are the same whichever command is asked."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,9 @@ from jaxbacklash.criticism.refine import _Judge
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting.left_over import quieter
 from jaxbacklash.fitting.setup import base_system
+from jaxbacklash.model_file import noise_known
+from tests.hidden import hidden
+from tests.in_process import call
 from tests.test_noise_level import shaken
 
 LEVEL = 5e-7
@@ -57,6 +62,43 @@ def test_fit_and_refine_find_one_noise_under_a_force_of_noise(shaken_twice):
         assert refined.parameters[name].stderr == pytest.approx(one.stderr, rel=0.05)
 
 
+def test_compare_tells_of_an_incomplete_model_what_refine_did(shaken_twice, tmp_path):
+    """The noise was found beside a model that explains; one that does not is as wrong for `compare` as in the table."""
+    record, heldout = shaken_twice
+    bench, trial = hardening(record, heldout)
+    settled(bench, trial)
+    refined = _Judge(bench, heldout, "linear", False, True, None, lambda fit: None)(bench.fit({}, patience=60))
+    assert refined.heldout.rms > 10.0
+    told(refined, record, heldout, tmp_path)
+
+
+def test_compare_tells_what_refine_did_of_windows_that_no_model_joins(tmp_path):
+    record, rig, _, _ = hidden("cubic_stiffness", "multisine", 7, seconds=8.0)
+    heldout, _, _, _ = hidden("cubic_stiffness", "chirp", 7, seconds=8.0)
+    base, free, _ = base_system(record, "joint", rig.inertia)
+    bench = Workbench(record, base, free, None, beside=heldout)
+    refined = _Judge(bench, heldout, "joint", False, False, None, lambda fit: None)(bench.fit({}, patience=60))
+    assert refined.heldout.rms > 10.0
+    told(refined, record, heldout, tmp_path)
+    fitted = jb.fit(record, inertia=rig.inertia, heldout=heldout, starts=1)
+    told(fitted, record, heldout, tmp_path)
+
+
+def told(fit, record, heldout, folder):
+    """`compare` of the model that was written tells both errors to one percent."""
+    between = jb.records.force.between(fit.records) if "F" in record.channels else None
+    text = jb.dump_model(fit.system, between=between, known_noise=fit.known_noise)
+    (folder / "model.toml").write_text(text)
+    assert noise_known(folder / "model.toml") == (fit.known_noise if fit.known_noise[0] < 1.0 else (1.0, 0.0))
+    for file, score in ((record, fit.score), (heldout, fit.heldout)):
+        jb.write_record(file, folder / "rec.csv")
+        found = call(["compare", "model.toml", "rec.csv", "--json"], folder)
+        assert found.code == 0, found.err
+        stage = json.loads(found.out)["stages"][0]
+        assert stage["rms_over_noise"] == pytest.approx(score.rms, rel=0.01)
+        assert stage["median_over_noise"] == pytest.approx(score.median, rel=0.01)
+
+
 def test_noise_is_taken_for_less_only_beyond_chance():
     t = np.arange(10_000) / 100.0
 
@@ -67,3 +109,12 @@ def test_noise_is_taken_for_less_only_beyond_chance():
 
     assert [factor(600, 0.94), factor(600, 0.9)] == [1.0, 0.9]
     assert [factor(10_000, 0.98), factor(10_000, 0.96)] == [1.0, 0.96]
+
+
+def test_a_noise_that_cannot_be_is_refused(tmp_path):
+    text = jb.dump_model(jb.System(1.0, None, None, {}, "z"), known_noise=(0.5, 1e-4))
+    (tmp_path / "m.toml").write_text(text)
+    assert noise_known(tmp_path / "m.toml") == (0.5, 1e-4)
+    (tmp_path / "m.toml").write_text(text.replace("factor = 0.5", "factor = 1.5"))
+    with pytest.raises(jb.BadInput, match=r"\[noise\] has factor 1.5"):
+        jb.load_model(tmp_path / "m.toml")

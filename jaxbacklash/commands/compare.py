@@ -5,10 +5,11 @@ from __future__ import annotations
 import shlex
 import sys
 from pathlib import Path
+from typing import Any
 
 from .. import __version__
 from ..fitting import compare as compare_records
-from ..model_file import dump_model, load_model
+from ..model_file import dump_model, load_model, noise_known
 from ..records.force import between
 from ..report.result import comparison_json
 from .common import check_window, json_text, out_folder, progress, write_text
@@ -27,12 +28,12 @@ def run(
 ) -> None:
     """Read both, predict window by window, print; write the result and the report when a folder is given."""
     check_window(window)
-    system = load_model(model)
+    system, known = load_model(model), noise_known(model)
     record = reading.record(path)
     folder = out_folder(out)
     with progress(as_json) as tell:
         tell("predicting", 0.1)
-        found = compare_records(system, record, window=window, translational=translational)
+        found = compare_records(system, record, window=window, translational=translational, known=known)
         words = shlex.join(["jaxbacklash", *sys.argv[1:]])
         result = comparison_json(found, str(model), command_line=words, version=__version__)
         if folder is not None:
@@ -40,7 +41,8 @@ def run(
 
             tell("drawing the report", 0.8)
             write_text(folder / "result.json", json_text(result))
-            write_text(folder / "model.toml", dump_model(system, translational=translational, between=between([record])))
+            facts: dict[str, Any] = {"between": between([record]), "known_noise": known}
+            write_text(folder / "model.toml", dump_model(system, translational=translational, **facts))
             compare_report(found, result, folder / "report.html")
     if as_json:
         sys.stdout.write(json_text(result))

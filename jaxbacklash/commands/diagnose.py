@@ -71,6 +71,7 @@ def run(
                 dump_model(
                     fit.system, translational=translational, per_inertia=fit.per_inertia, heading=heading,
                     between=between([record]),
+                    known_noise=fit.known_noise,
                 ),
             )
             diagnose_report(fit, found, result, folder / "report.html")

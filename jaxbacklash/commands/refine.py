@@ -110,7 +110,8 @@ def _write(
     fit = found.fit
     write_text(folder / "result.json", json_text(result))
     about: dict[str, Any] = {
-        "translational": fit.translational, "per_inertia": fit.per_inertia, "between": between(fit.records)
+        "translational": fit.translational, "per_inertia": fit.per_inertia, "between": between(fit.records),
+        "known_noise": fit.known_noise,
     }  # fmt: skip
     title = f"{fit.records[0].summary()}\n{result['verdict_text']}"
     write_text(folder / "model.toml", dump_model(fit.system, heading=title, **about))
