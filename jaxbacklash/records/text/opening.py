@@ -24,6 +24,9 @@ from ..checks import wrong
 SNIFFED_BYTES = 65536
 """The encoding is judged by these first bytes."""
 
+AT_ONCE = 2**18
+"""Bytes read at once where only the lines are counted."""
+
 MOST_UNPACKED = 512 * 2**20
 """A packed file that holds more bytes of text than this is refused: it might have no end. Ten million rows are within it."""
 
@@ -62,6 +65,14 @@ class Source:
             for _ in itertools.islice(file, skip):
                 continue
             yield file
+
+    def last_line(self) -> int:
+        """`Bytes.last_line`, for which the whole file is gone through."""
+        with unpacked(self.path, self.gzip) as raw:
+            room = bytearray(AT_ONCE)
+            while raw.readinto(room):
+                continue
+            return raw.last_line()
 
 
 class Bytes(io.RawIOBase):

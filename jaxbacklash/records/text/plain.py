@@ -19,6 +19,12 @@ from .opening import last_line
 CHUNK = 2**18
 """Characters read at once."""
 
+ASCII = ("utf-8-sig", "cp1252")
+"""Encodings in which a byte that is a digit, a mark or the end of a line stands for nothing else."""
+
+PACKED_SUFFIXES = (".gz", ".bz2", ".xz", ".lzma")
+"""Suffixes by which NumPy unpacks a file, whatever it holds."""
+
 
 def read_plain(layout: Layout, decimal: str | None) -> tuple[np.ndarray, str, np.ndarray | None] | None:
     """All values of a table of numbers.
@@ -48,18 +54,52 @@ def read_plain(layout: Layout, decimal: str | None) -> tuple[np.ndarray, str, np
         return None
     try:
         _load(map(_pointed, layout.sample) if comma else layout.sample, layout)
-        with layout.source.lines(layout.first_line - 1) as file:
-            values = _load(itertools.chain.from_iterable(_lines(file, comma)), layout)
-            consecutive = last_line(file) == layout.first_line + len(values) - 1
+        values, last = (None if comma else _at_once(layout)) or _by_lines(layout, comma)
     except ValueError:
         return None
     if values.shape[1] != len(layout.names) or (layout.separator != "," and _may_group(layout, values, comma, decimal)):
         return None
+    consecutive = last == layout.first_line + len(values) - 1
     return values, "," if comma else ".", None if consecutive else _line_numbers(layout, len(values))
 
 
 def _load(lines: Iterable[str], layout: Layout) -> np.ndarray:
     return np.loadtxt(lines, delimiter=layout.separator, comments="#", ndmin=2, quotechar='"' if layout.quoted else None)
+
+
+def _at_once(layout: Layout) -> tuple[np.ndarray, int] | None:
+    """All values, and the number of the last line, of a file that NumPy opens itself: a third faster than line by line.
+
+    None where it would not read what `Source.lines` does: out of a packed file, of one whose suffix says that it is packed, in
+    quotes, or where a byte is no character.
+
+    Raises
+    ------
+    ValueError
+        Where some cell is no number.
+    """
+    source = layout.source
+    if source.gzip or source.encoding not in ASCII or layout.quoted or source.path.suffix.lower() in PACKED_SUFFIXES:
+        return None
+    try:
+        values = np.loadtxt(
+            str(source.path),
+            delimiter=layout.separator,
+            comments="#",
+            ndmin=2,
+            encoding=source.encoding,
+            skiprows=layout.first_line - 1,
+        )
+    except UnicodeDecodeError:
+        return None
+    return values, source.last_line()
+
+
+def _by_lines(layout: Layout, comma: bool) -> tuple[np.ndarray, int]:
+    """As `_at_once`, of any file."""
+    with layout.source.lines(layout.first_line - 1) as file:
+        values = _load(itertools.chain.from_iterable(_lines(file, comma)), layout)
+        return values, last_line(file)
 
 
 def _pointed(text: str) -> str:
