@@ -47,15 +47,19 @@ def uniform_grid(t: np.ndarray) -> np.ndarray | None:
         `t` itself where it is uniform to 1e-6 of a step, the straight line through it where it is uniform up to its
         rounding, None where it is not uniform.
     """
-    rows = np.arange(t.size) - (t.size - 1) / 2
+    rows = np.arange(t.size, dtype=float)
+    rows -= (t.size - 1) / 2
     since = t - t[0]
     square = float(t.size) * (float(t.size) ** 2 - 1.0) / 12.0  # rows @ rows
     step = float(rows @ since) / square
-    error = since - step * rows
+    error = step * rows
+    np.subtract(since, error, out=error)  # in place: a new array of a million takes longer to get than to fill
     # Once more on what is left: over millions of rows the first slope carries the rounding of its own sums.
-    step += float(rows @ (error - error.mean())) / square
-    error = since - step * rows
-    middle, worst = (error.max() + error.min()) / 2, (error.max() - error.min()) / 2
+    error -= error.mean()
+    step += float(rows @ error) / square
+    np.subtract(since, np.multiply(step, rows, out=error), out=error)
+    low, high = error.min(), error.max()
+    middle, worst = (high + low) / 2, (high - low) / 2
     if worst <= max(RELATIVE * step, np.spacing(max(abs(t[0]), abs(t[-1])))):
         return t
     if worst > step / 2:

@@ -102,9 +102,11 @@ def _stale_first(values: np.ndarray, name: str) -> list[Finding]:
     last = int(np.argmin(still)) - 1  # the last row that is still
     if not 1 <= last <= FIRST:
         return []
-    r = np.abs(surprise(values))
-    here, elsewhere = float(np.max(r[max(last - 1, 2) : last + 3])), float(np.max(r[last + 6 :]))
-    if here < CORNER * max(elsewhere, SURPRISE_OF_NOISE * noise):
-        return []
+    here = float(np.max(np.abs(surprise(values[: last + 5])[max(last - 1, 2) : last + 3])))
+    # The first samples, where they have as sharp a corner, save going through all.
+    for some in (values[:EVERY], values):
+        elsewhere = float(np.max(np.abs(surprise(some)[last + 6 :])))
+        if here < CORNER * max(elsewhere, SURPRISE_OF_NOISE * noise):
+            return []
     what = f"repeats its first value up to row {last + 1} and then goes on at full speed; those rows are stale and left out"
     return [Finding("stale-first", WARN, name, what, rows=tuple(range(last + 1)), left_out=last + 1)]

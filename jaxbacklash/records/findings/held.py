@@ -46,7 +46,7 @@ def held(channels: Mapping[str, np.ndarray]) -> list[Finding]:
             what = f"has a new value every {every} rows only and holds it in between"
             found.append(Finding("held", ASK, name, what, f"--despike {name}", size=float(every)))
             continue
-        stale = np.setdiff1d(stale_rows(values), lost)
+        stale = np.setdiff1d(stale_rows(values, every), lost)
         if stale.size >= FEW_STALE:
             what = f"{listed_rows(stale)} repeat{'s' if stale.size == 1 else ''} the value before while the motion goes on"
             few = stale.size <= max(3, 1e-3 * values.size)
@@ -80,8 +80,11 @@ def refreshed_every(values: np.ndarray) -> int:
     return every if np.median(steps) > LIVELY / 2 * quantum(values) else 1
 
 
-def stale_rows(values: np.ndarray) -> np.ndarray:
-    """Rows (from 0) that repeat the value before though the channel is too finely read, or moves too fast, for that by chance."""
+def stale_rows(values: np.ndarray, every: int | None = None) -> np.ndarray:
+    """Rows (from 0) that repeat the value before though the channel is too finely read, or moves too fast, for that by chance.
+
+    ``every`` is what `refreshed_every` gives for the values (N,), where that is known.
+    """
     none = np.zeros(0, dtype=int)
     steps = np.diff(values)
     rests = steps == 0.0
@@ -90,7 +93,7 @@ def stale_rows(values: np.ndarray) -> np.ndarray:
     # Longer runs are a rest, or what `held_rows` speaks of.
     length = runs(rests)[1]
     still = np.flatnonzero(rests)[np.repeat(length < HELD_ROWS, length)] + 1
-    if still.size < FEW_STALE or still.size > MOST * values.size or refreshed_every(values) > 1:
+    if still.size < FEW_STALE or still.size > MOST * values.size or (every or refreshed_every(values)) > 1:
         return none
     count = quantum(values)
     coarsest, repeats = _by_size(values, steps)
@@ -151,8 +154,8 @@ def _overtaken(values: np.ndarray, small: np.ndarray, count: float) -> np.ndarra
     usual = np.minimum(np.abs(before), np.abs(after))
     onward = (np.sign(before) == np.sign(after)) & (np.sign(here) == np.sign(after))
     found = onward & (usual > LIVELY * count) & (np.abs(here) > 1.5 * usual)
-    rows = [np.arange(a + 1, a + n + 1) for a, n in zip(first[found], length[found], strict=True)]
-    return np.concatenate([np.zeros(0, dtype=int), *rows])
+    first, length = first[found], length[found]
+    return np.repeat(first + 1 + length - np.cumsum(length), length) + np.arange(length.sum())
 
 
 def held_rows(channels: Mapping[str, np.ndarray]) -> list[Finding]:

@@ -63,7 +63,10 @@ def around(size: np.ndarray, rows: np.ndarray, near: int = 4, far: int = 20, sha
 
 def runs(flags: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """First rows and lengths of the runs of True in an array of shape (N,)."""
-    edges = np.flatnonzero(np.diff(flags.astype(np.int8), prepend=np.int8(0), append=np.int8(0)))
+    if not flags.size:
+        return np.zeros(0, dtype=int), np.zeros(0, dtype=int)
+    inner = np.flatnonzero(flags[1:] != flags[:-1]) + 1
+    edges = np.concatenate([np.zeros(int(flags[0]), dtype=int), inner, np.full(int(flags[-1]), flags.size)])
     return edges[::2], edges[1::2] - edges[::2]
 
 
@@ -89,7 +92,7 @@ def common_step(steps: np.ndarray) -> float | None:
     for rank in (0, 1, 2, 4, 8, 16, steps.size // 200):
         count = float(steps[min(rank, steps.size - 1)])
         small = steps[: np.searchsorted(steps, 200 * count)] / count
-        if small.size >= min(16, steps.size) and np.mean(np.abs(small - np.round(small)) < 0.1) > 0.9:
+        if small.size >= min(16, steps.size) and np.count_nonzero(np.abs(small - np.rint(small)) < 0.1) / small.size > 0.9:
             return count
     return None
 
