@@ -8,7 +8,7 @@ import numpy as np
 
 from jaxbacklash.records.finding import ASK, WARN, Finding
 
-from .local import EVERY, SURPRISE_OF_NOISE, common_step, listed_rows, quantum, runs, surprise
+from .local import EVERY, SURPRISE_OF_NOISE, common_step, each, listed_rows, quantum, runs, surprise
 
 HELD_ROWS = 4
 """Equal rows from which on they count as filled with the last one, where they end in a jump."""
@@ -38,18 +38,16 @@ def held(channels: Mapping[str, np.ndarray]) -> list[Finding]:
     first, length = runs(together) if together.any() else (np.zeros(0, dtype=int),) * 2
     rows = [np.arange(a + 1, a + n + 1) for a, n in zip(first, length, strict=True) if n >= HELD_ROWS - 1]
     lost = np.concatenate([np.zeros(0, dtype=int), *rows])
-    steady = {name: refreshed_every(values) for name, values in channels.items()}
     found = []
-    for name, values in channels.items():
-        every = steady[name]
+    for name, (every, stale) in each(_refreshed_and_stale, channels).items():
         if every > 1:
             what = f"has a new value every {every} rows only and holds it in between"
             found.append(Finding("held", ASK, name, what, f"--despike {name}", size=float(every)))
             continue
-        stale = np.setdiff1d(stale_rows(values, every), lost)
+        stale = np.setdiff1d(stale, lost)
         if stale.size >= FEW_STALE:
             what = f"{listed_rows(stale)} repeat{'s' if stale.size == 1 else ''} the value before while the motion goes on"
-            few = stale.size <= max(3, 1e-3 * values.size)
+            few = stale.size <= max(3, 1e-3 * channels[name].size)
             rest = "; bridged by the samples around" if few else ""
             found.append(
                 Finding(
@@ -63,6 +61,11 @@ def held(channels: Mapping[str, np.ndarray]) -> list[Finding]:
                 )
             )
     return found
+
+
+def _refreshed_and_stale(values: np.ndarray) -> tuple[int, np.ndarray]:
+    every = refreshed_every(values)
+    return every, stale_rows(values, every)
 
 
 def refreshed_every(values: np.ndarray) -> int:

@@ -8,7 +8,7 @@ import numpy as np
 
 from jaxbacklash.records.finding import ASK, REFUSE, Finding
 
-from .local import POSITIONS, SURPRISE_OF_NOISE, around, beyond, level, quantum, surprise
+from .local import SURPRISE_OF_NOISE, around, beyond, each, level, positions, quantum, surprise
 
 TURNS = {2 * np.pi: "2 pi", np.pi: "pi", 360.0: "360", 180.0: "180"}
 """Where angles begin anew, in rad and degrees."""
@@ -42,8 +42,8 @@ def known_wraps(channels: Mapping[str, np.ndarray]) -> list[Finding]:
 def wraps(channels: Mapping[str, np.ndarray], known: bool = False) -> list[Finding]:
     """Jumps by any turn, or by those ``known``, in x, y and z."""
     found = []
-    for name in POSITIONS:
-        if name in channels and (jumped := turn_of(channels[name], known)):
+    for name, jumped in each(lambda values: turn_of(values, known), positions(channels)).items():
+        if jumped:
             turn, rows = jumped
             called = TURNS.get(turn, f"{turn:.6g}")
             more = f" and {rows.size - 1} more" if rows.size > 1 else ""
@@ -141,7 +141,7 @@ def _not_lost_rows(channels: Mapping[str, np.ndarray], name: str, row: int, size
 
 def shifts(t: np.ndarray, channels: Mapping[str, np.ndarray]) -> list[Finding]:
     """Counts lost: x, y or z alone goes on from another zero."""
-    every = {name: shifts_of(channels[name]) for name in POSITIONS if name in channels}
+    every = each(shifts_of, positions(channels))
     found: list[Finding] = []
     if not any(rows.size for rows, _ in every.values()):
         return found

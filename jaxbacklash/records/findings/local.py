@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import TypeVar
 
 import numpy as np
+
+from jaxbacklash.side_by_side import side_by_side
 
 POSITIONS = ("x", "y", "z")
 """Channels of things that have mass, and so neither jump nor stand out for a single sample; forces may."""
@@ -16,6 +19,10 @@ EVERY = 65536
 """Samples from which a level is taken: its error is under a percent, and a long record costs no more."""
 _PIECE = 16384
 """Samples that are worked on at once."""
+LONG = 200_000
+"""Samples from which on a channel is worth a core of its own."""
+
+Found = TypeVar("Found")
 
 
 def surprise(values: np.ndarray) -> np.ndarray:
@@ -37,6 +44,18 @@ def surprise(values: np.ndarray) -> np.ndarray:
         part = values[first : first + _PIECE + 4]
         out[first + 2 : first + part.size - 2] = part[2:-2] - (4.0 * (part[1:-3] + part[3:-1]) - part[:-4] - part[4:]) / 6.0
     return out
+
+
+def each(work: Callable[[np.ndarray], Found], channels: Mapping[str, np.ndarray]) -> dict[str, Found]:
+    """What ``work`` finds in each channel (N,); in long ones side by side."""
+    longest = max((values.size for values in channels.values()), default=0)
+    found = side_by_side(work, channels.values()) if longest > LONG else map(work, channels.values())
+    return dict(zip(channels, found, strict=True))
+
+
+def positions(channels: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The channels that are `POSITIONS`, in their order."""
+    return {name: channels[name] for name in POSITIONS if name in channels}
 
 
 def beyond(values: np.ndarray, limit: float) -> np.ndarray:

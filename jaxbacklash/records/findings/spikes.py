@@ -8,7 +8,20 @@ import numpy as np
 
 from jaxbacklash.records.finding import ASK, WARN, Finding
 
-from .local import POSITIONS, SURPRISE_OF_NOISE, around, beyond, bridge, level, listed_rows, quantum, runs, surprise
+from .local import (
+    POSITIONS,
+    SURPRISE_OF_NOISE,
+    around,
+    beyond,
+    bridge,
+    each,
+    level,
+    listed_rows,
+    positions,
+    quantum,
+    runs,
+    surprise,
+)
 
 CLEAR = 20.0
 """Times what is usual around it that a spike is at least. The corner that an impact leaves in a position looks like a spike to 86
@@ -36,18 +49,16 @@ _NONE = np.zeros(0, dtype=int)
 def codes(channels: Mapping[str, np.ndarray]) -> list[Finding]:
     """Codes for failed readings, in every channel."""
     found = []
-    for name, values in channels.items():
-        rows, what = code_rows(values)
+    for name, (rows, what) in each(code_rows, channels).items():
         if rows.size:
-            found.append(_bridged_or_asked("sentinel", name, values, rows, f"hold{'s' if rows.size == 1 else ''} {what}"))
+            found.append(_bridged_or_asked("sentinel", name, channels[name], rows, f"hold{'s' if rows.size == 1 else ''} {what}"))
     return found
 
 
 def spikes(channels: Mapping[str, np.ndarray]) -> list[Finding]:
     """Single samples that stand out, in x, y and z."""
     found = []
-    for name in POSITIONS:
-        rows = spike_rows(channels[name]) if name in channels else _NONE
+    for name, rows in each(spike_rows, positions(channels)).items():
         if rows.size:
             what = f"stand{'s' if rows.size == 1 else ''} out alone from the motion around"
             found.append(_bridged_or_asked("spike", name, channels[name], rows, what))
