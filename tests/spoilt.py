@@ -144,6 +144,11 @@ def held_at_first(rng, record):
     return {"t": np.arange(rows + record["t"].size) / 250.0, "z": np.concatenate([held, record["z"]])}, None
 
 
+def grown(rng, record):
+    """The answer to a chirp, without what drives it."""
+    return {"t": record["t"], "z": record["z"]}, None
+
+
 def late_at_first(rng, record):
     """Channel y by a delay of three samples, whose buffer held the first value of a motion under way."""
     fast = int(np.argmax(np.abs(np.diff(record["y"][:700])))) + 30

@@ -30,6 +30,7 @@ from tests.spoilt import (
     geared,
     going_back,
     good,
+    grown,
     held_at_first,
     in_bursts,
     in_counts,
@@ -88,6 +89,7 @@ CASES = [
     ("no-answer", "z", REFUSE, unanswered, {}),
     ("no-answer", "z", REFUSE, below_a_count, {}),
     ("held-first", "z", WARN, held_at_first, {"kind": "free_decay"}),
+    ("driven", "z", ASK, grown, {}),
     ("stale-first", "y", WARN, late_at_first, {"observed": "y"}),
     ("backwards", "t", REFUSE, going_back, {}),
     ("bursts", "t", ASK, in_bursts, {}),
@@ -137,6 +139,17 @@ def test_both_ways_out_that_a_sentence_names_end_the_question(kind, spoil, how, 
             asked["t"] = np.arange(record["t"].size) / options.rate
         left, _ = looked_at(asked, options, units_stated=frozenset(options.units))
         assert not [one for one in left if (one.kind, one.channel) == (kind, named.channel) and one.action != WARN]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_what_dies_away_is_no_driven_motion(seed):
+    rng = np.random.default_rng(seed)
+    t = np.arange(3000) / 250.0
+    tones = [(rng.uniform(0.2, 1.0), rng.uniform(1.0, 12.0), rng.uniform(0.2, 1.0), rng.uniform(0.0, 6.3)) for _ in range(2)]
+    z = sum(0.02 * a * np.exp(-d * t) * np.cos(2 * np.pi * f * t + phase) for a, f, d, phase in tones)
+    z[: int(rng.integers(1, 600))] *= float(rng.integers(2))  # half of them are struck some time after the record begins
+    found, _ = looked_at({"t": t, "z": z + rng.normal(0.0, 1e-5, t.size)})
+    assert "driven" not in {one.kind for one in found}
 
 
 def test_every_row_of_the_table_is_tried_here():

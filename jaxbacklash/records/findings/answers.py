@@ -1,4 +1,4 @@
-"""Whether and from when on the observed channel answers: nothing but noise, a link held at first, stale first rows."""
+"""Whether and from when on the observed channel answers: noise alone, a link held first, a drive not named, stale first rows."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from jaxbacklash.records.finding import REFUSE, WARN, Finding
+from jaxbacklash.records.finding import ASK, REFUSE, WARN, Finding
 
 from .local import EVERY, SURPRISE_OF_NOISE, level, quantum, surprise
 
@@ -22,6 +22,13 @@ LET_GO = 0.05
 """Share of the way from where a link is held to its rest beyond which it is let go."""
 FAR = 40.0
 """Times the noise that it is held off its rest at least."""
+PARTS, PLACES = 6, ("first", "second", "third", "fourth", "fifth", "last")
+"""Parts of a record of a link alone whose motion is compared, and how they are called."""
+GROWN, SWINGS = 1.5, 4
+"""Times the motion of an earlier part by which a later one exceeds it where something drives the link, and passages of its middle
+that each of them shows: less than two swings may be any part of one."""
+LASTS = 0.5
+"""Share of its largest motion that such a link has left at the end: what was struck, or beats with another part, dies away."""
 CORNER = 1.5
 """Times the sharpest corner anywhere else that the end of stale first rows is at least: they end at full speed in one sample."""
 FIRST = 12
@@ -39,7 +46,7 @@ def answers(t: np.ndarray, channels: Mapping[str, np.ndarray]) -> list[Finding]:
     if found:
         return found
     if drive is None:
-        return _held_first(t, values, name)
+        return _held_first(t, values, name) or _driven(values, name)
     return _stale_first(values, name) if name != "T" else []
 
 
@@ -91,6 +98,24 @@ def _held_first(t: np.ndarray, values: np.ndarray, name: str) -> list[Finding]:
         "those rows are left out (--from 0 keeps them)"
     )
     return [Finding("held-first", WARN, name, what, rows=(0, release - 1), size=float(t[release - 1]), left_out=release)]
+
+
+def _driven(values: np.ndarray, name: str) -> list[Finding]:
+    """A motion that grows where nothing is said to drive it: what a passive joint does alone dies away."""
+    parts = np.array_split(values, PARTS)
+    sizes = [float(np.std(part)) for part in parts]
+    most = int(np.argmax(sizes))
+    least = int(np.argmin(sizes[: most + 1]))
+    swings = min(np.count_nonzero(np.diff(parts[n] > np.mean(parts[n]))) for n in (least, most))
+    grows = sizes[most] > max(GROWN * sizes[least], FAR * level(surprise(values))) and swings >= SWINGS
+    if not grows or sizes[-1] < LASTS * sizes[most]:
+        return []
+    what = (
+        f"stands alone and is read as a free decay, but grows from {sizes[least]:.3g} rms in the {PLACES[least]} sixth to "
+        f"{sizes[most]:.3g} in the {PLACES[most]}; name what drives it (--columns x=NAME the base, F=NAME a force), or keep the "
+        "part that dies away (--from, --to)"
+    )
+    return [Finding("driven", ASK, name, what, size=sizes[most] / max(sizes[least], 1e-300))]
 
 
 def _stale_first(values: np.ndarray, name: str) -> list[Finding]:

@@ -107,6 +107,11 @@ RULES: dict[str, Rule] = {
         WARN,
         "--from",
     ),
+    "driven": Rule(
+        "z or y alone, which is read as a free decay, whose motion grows and does not die away",
+        "1.5 times from one sixth of the record to a later one, two swings in each, and 40 times the noise",
+        ASK,
+    ),
     "stale-first": Rule(
         "first rows that repeat one value until the observed channel goes on at full speed",
         "1.5 times the sharpest corner anywhere else, up to 12 rows; they are left out",
