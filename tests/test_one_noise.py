@@ -47,6 +47,7 @@ def settled(bench, trial):
     raise AssertionError("the noise does not settle")
 
 
+@pytest.mark.slow
 def test_fit_and_refine_find_one_noise_under_a_force_of_noise(shaken_twice):
     record = shaken_twice[0]
     fitted = jb.fit(record, model="linear", effects=["cubic_stiffness"], starts=1)

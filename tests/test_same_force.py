@@ -42,7 +42,9 @@ def free_run(found):
     return np.asarray(predicted)[np.asarray(found.problem.windows.weight) > 0.0]
 
 
-@pytest.mark.parametrize("between", ["smooth", "curved", "held", "straight"])
+@pytest.mark.parametrize(
+    "between", ["held", "straight", *(pytest.param(how, marks=pytest.mark.slow) for how in ("smooth", "curved"))]
+)
 def test_simulate_runs_the_force_as_fit_has_taken_it(between, tmp_path):
     record = driven(between)
     assert way(record) == between
