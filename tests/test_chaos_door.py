@@ -12,7 +12,7 @@ from .independent.chaotic import HENON
 from .report_samples import numbers
 from .test_cli import call as call  # the fixture that runs the command line
 from .test_cli import sentence
-from .test_timeseries import DT, swept
+from .test_timeseries_driven import DT, swept
 
 
 def write(path, names, *columns):

@@ -12,10 +12,8 @@ from jaxbacklash.records.finding import ASK, REFUSE, WARN
 from jaxbacklash.records.findings import find, find_in_times, mend
 from jaxbacklash.records.findings.local import bridge, level, surprise
 from jaxbacklash.records.findings.rules import RULES, silenced
-from jaxbacklash.records.findings.stamps import rate_of
 from jaxbacklash.records.options import ReadOptions
 from jaxbacklash.records.remedies import applied
-from jaxbacklash.records.time_axis import uniform_grid
 from tests.independent.rigs import STRENGTHS
 from tests.spoilt import (
     NOISE,
@@ -150,6 +148,18 @@ def test_what_dies_away_is_no_driven_motion(seed):
     z[: int(rng.integers(1, 600))] *= float(rng.integers(2))  # half of them are struck some time after the record begins
     found, _ = looked_at({"t": t, "z": z + rng.normal(0.0, 1e-5, t.size)})
     assert "driven" not in {one.kind for one in found}
+
+
+@needs_numba
+def test_a_link_alone_is_asked_about_where_it_is_driven_and_only_there():
+    driven = decaying = 0
+    for seed in range(30):
+        for kind, record in (("driven", good(seed)), ("decaying", good(seed, kind="free_decay"))):
+            found, _ = looked_at({"t": record["t"], "z": record["z"]})
+            asked = "driven" in {one.kind for one in found}
+            driven, decaying = driven + (asked and kind == "driven"), decaying + (asked and kind == "decaying")
+    assert driven >= 27
+    assert decaying == 0
 
 
 def test_every_row_of_the_table_is_tried_here():
@@ -294,49 +304,6 @@ def smooth(rate: float = 250.0, samples: int = 1500) -> dict[str, np.ndarray]:
     t = np.arange(samples) / rate
     noise = np.random.default_rng(5).normal(0.0, NOISE, (2, samples))
     return {"t": t, "x": 0.05 * np.sin(9 * t) + noise[0], "z": 0.01 * np.sin(31 * t) + 0.004 * np.sin(45 * t) + noise[1]}
-
-
-@pytest.mark.parametrize("rate", [333.0, 400.0, 640.0, 800.0, 900.0])
-def test_the_rate_of_rounded_stamps_is_the_rate_of_the_samples(rate):
-    t = np.round(np.arange(6000) / rate, 3)
-    assert rate_of(t) == pytest.approx(rate, rel=1e-5)
-    grid = uniform_grid(t)
-    assert grid is not None
-    assert 1.0 / np.diff(grid).mean() == pytest.approx(rate, rel=1e-5)
-    assert not find_in_times(t, NOTHING_SAID)
-
-
-@pytest.mark.parametrize("seed", SEEDS)
-def test_the_rate_with_lost_rows_or_jitter_is_that_of_the_others(seed):
-    rng = np.random.default_rng(seed)
-    lost = np.sort(rng.choice(6000, 5700, replace=False)) / 500.0
-    assert rate_of(lost) == pytest.approx(500.0, rel=1e-9)
-    assert uniform_grid(lost) is None
-    assert rate_of((np.arange(6000) + rng.uniform(-0.3, 0.3, 6000)) / 500.0) == pytest.approx(500.0, rel=1e-3)
-
-
-@pytest.mark.parametrize("rate", [200.0, 500.0, 1000.0, 2500.0])
-def test_stamps_in_bursts_propose_the_rate_of_the_samples(rate):
-    rows = np.arange(5000)
-    for t in ((rows // 16) * 16 / rate, (rows // 16) * 16 / rate + (rows % 16) * 1e-7, np.round(rows / 1500.0, 3)):
-        found = find_in_times(t, NOTHING_SAID)
-        true = 1500.0 if t[-1] == np.round(rows / 1500.0, 3)[-1] else rate
-        assert [one.kind for one in found] == ["bursts"]
-        assert applied(NOTHING_SAID, found[0].remedy).rate == pytest.approx(true, rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("t", "asked"),
-    [
-        (2.0 * np.arange(200), []),  # a picture every 2 s: as milliseconds it would last 0.4 s
-        (0.1 * np.arange(3000), []),
-        (2.0 * np.arange(3000), ["--unit t=ms"]),
-        (2e3 * np.arange(3000), ["--unit t=us"]),
-    ],
-)
-def test_slow_times_are_asked_about_only_where_they_may_be_milliseconds(t, asked):
-    assert [one.remedy for one in find_in_times(t, NOTHING_SAID)] == asked
-    assert not find_in_times(t, NOTHING_SAID, units_stated=frozenset("t"))
 
 
 # ---- No false alarm ----
