@@ -22,15 +22,15 @@ from matplotlib.figure import Figure
 
 import jaxbacklash as jb
 from jaxbacklash.commands.demo import shipped
-from jaxbacklash.report.drawing import SETTINGS
-from jaxbacklash.report.fit_report import Motion
-from jaxbacklash.report.style import GAP, INK, MEASURED, MODEL
-from jaxbacklash.report.thinning import envelope
+from jaxbacklash.plot.drawing import SETTINGS, inked
+from jaxbacklash.plot.motion import Motion
+from jaxbacklash.plot.style import GAP, INK, MEASURED, MODEL
+from jaxbacklash.plot.thinning import envelope
 
 ROOT = Path(__file__).resolve().parents[1]
 STRETCH = (1.2, 2.6)  # s, drawn in full
 NEAR = np.radians(2.4)  # half width of the picture of the torque
-LOOK = SETTINGS | {"svg.fonttype": "path", "font.size": 10.0, "axes.titlesize": 11.0, "axes.titleweight": "bold"}
+LOOK = SETTINGS | inked(INK) | {"svg.fonttype": "path", "font.size": 10.0, "axes.titlesize": 11.0, "axes.titleweight": "bold"}
 CARD, DARK_CARD, DARK_INK = "#ffffff", "#161b22", "#e6edf3"
 
 

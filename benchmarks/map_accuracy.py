@@ -176,11 +176,12 @@ def divergence(inverse_alpha: np.ndarray) -> float:
 
 def draw(folder: Path, inverse_alpha: np.ndarray, found: Line, referee: Line) -> None:
     """Figures 2 and 3 of the paper with the referee's values on top."""
-    from jaxbacklash.report.figures_maps import exponent_curve
+    from jaxbacklash.plot.drawing import on_page
+    from jaxbacklash.plot.maps import exponent_curve
 
     folder.mkdir(parents=True, exist_ok=True)
-    figure = exponent_curve(
-        inverse_alpha, found.exponent, found.stderr, name="inverse_alpha", unit="1", exponent_unit="1/tau",
+    figure = on_page(
+        exponent_curve, inverse_alpha, found.exponent, found.stderr, name="inverse_alpha", unit="1", exponent_unit="1/tau",
         samples=found.samples, title="CASE 1, 2ζ = 0.04; circles and red dots: the referee",
     )  # fmt: skip
     figure.axes[0].plot(inverse_alpha, referee.exponent, "o", mfc="none", mec="black", mew=0.4, ms=4.0)

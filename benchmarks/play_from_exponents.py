@@ -74,11 +74,11 @@ def imagined(map_: ExponentMap, twin: Twin, options: argparse.Namespace) -> None
             one = worth(wrong, AMPLITUDES, plays, experiments=count, seed=1, truth=map_)
             print(f"  {words:<40}{one}", flush=True)
     if options.out is not None:
-        from jaxbacklash.report.figures_signature import worth_over_play
+        from jaxbacklash.plot.drawing import on_page
 
         options.out.mkdir(parents=True, exist_ok=True)
         shown = {name: found[name] for name in ("3 levels", "the paper's 8", "32 levels")}
-        worth_over_play(shown).savefig(options.out / "worth_over_play.png", dpi=150)
+        on_page(jb.plot.worth, shown).savefig(options.out / "worth_over_play.png", dpi=150)
 
 
 def measured(map_: ExponentMap, options: argparse.Namespace) -> None:
@@ -146,12 +146,12 @@ def measured(map_: ExponentMap, options: argparse.Namespace) -> None:
 
 def draw(folder: Path, map_: ExponentMap, found: object, play: float, fit: object) -> None:
     """Levels on the map, and the likelihood of the play."""
-    from jaxbacklash.report.figures_signature import exponent_over_drive, play_likelihood
+    from jaxbacklash.plot.drawing import on_page
 
     folder.mkdir(parents=True, exist_ok=True)
-    exponent_over_drive(map_, found).savefig(folder / "exponent_over_drive.png", dpi=150)
+    on_page(jb.plot.exponent_over_drive, map_, found).savefig(folder / "exponent_over_drive.png", dpi=150)
     ends = None if fit is None or fit.value is None else tuple(fit.ci95)
-    play_likelihood(found, truth=play, fit=ends).savefig(folder / "play_likelihood.png", dpi=150)
+    on_page(jb.plot.play_likelihood, found, truth=play, fit=ends).savefig(folder / "play_likelihood.png", dpi=150)
     print(f"  written: {folder}")
 
 

@@ -128,7 +128,7 @@ def draw(rows: list[dict[str, Any]], out: Path) -> None:
     import matplotlib
     from matplotlib.figure import Figure
 
-    from jaxbacklash.report.style import GAP, HELDOUT, INK, MEASURED, MODEL
+    from jaxbacklash.plot.style import GAP, HELDOUT, INK, MEASURED, MODEL
 
     limit = threshold(rows[0]["samples"])
     with matplotlib.rc_context(

@@ -136,7 +136,8 @@ def dimensions(rows: list[Any], tiny: bool) -> None:
 
 def draw(folder: Path, tangent: np.ndarray, rows: list[Any], rate: float) -> None:
     """The bars of Table 2, and the twins of Fig. 16, 17 and 18."""
-    from jaxbacklash.report.figures_signature import cao_before_and_after, cleaned_signal, exponent_bars, phase_plots
+    from jaxbacklash.plot.drawing import on_page
+    from jaxbacklash.plot.twins import cao_before_and_after, cleaned_signal, exponent_bars, phase_plots
 
     folder.mkdir(parents=True, exist_ok=True)
     chosen = [k for k, *_ in rows]
@@ -144,14 +145,14 @@ def draw(folder: Path, tangent: np.ndarray, rows: list[Any], rate: float) -> Non
     ends = np.array([(np.nan, np.nan) if f.interval is None else BIT * np.array(f.interval) / FREQUENCY for *_, f in rows])
     degrees = np.degrees(AMPLITUDES[chosen])
     words = [f.verdict.word for *_, f in rows]
-    bars = exponent_bars(np.round(degrees, 2), tangent[:, chosen], value, ends, words, paper=PAPER[chosen])
+    bars = on_page(exponent_bars, np.round(degrees, 2), tangent[:, chosen], value, ends, words, paper=PAPER[chosen])
     bars.savefig(folder / "table_2.png", dpi=150)
     delay = int(np.median([f.delay.samples for *_, f in rows]))
     shown = 60 * round(rate / FREQUENCY)
     panels = [
         (f"{d:.2f}°", np.degrees(z[:shown]), word == "chaotic") for d, (_, z, _, _), word in zip(degrees, rows, words)
     ]
-    phase_plots(panels, delay).savefig(folder / "figure_16.png", dpi=150)
+    on_page(phase_plots, panels, delay).savefig(folder / "figure_16.png", dpi=150)
     _, noisy, truth, found = next(row for row in rows if row[0] == 3)
     if found.cleaned is not None and found.cleaned_dimension is not None:
         size = found.cleaned.series.size
@@ -161,11 +162,11 @@ def draw(folder: Path, tangent: np.ndarray, rows: list[Any], rate: float) -> Non
         at = np.arange(size)[part] / rate
         inside = slice(first + part.start, first + part.stop)
         three = [np.degrees(v) for v in (noisy[inside], cleaned[part], truth[inside])]
-        cleaned_signal(at, *three).savefig(folder / "figure_17.png", dpi=150)
+        on_page(cleaned_signal, at, *three).savefig(folder / "figure_17.png", dpi=150)
         raw, after = found.raw_dimension, found.cleaned_dimension
         both = min(raw.dimensions.size, after.dimensions.size)
-        cao_before_and_after(
-            raw.dimensions[:both], raw.e1[:both], after.e1[:both], (raw.cao, after.cao)
+        on_page(
+            cao_before_and_after, raw.dimensions[:both], raw.e1[:both], after.e1[:both], (raw.cao, after.cao)
         ).savefig(folder / "figure_18.png", dpi=150)
     print(f"written: {folder}")
 
@@ -196,9 +197,9 @@ def search(tiny: bool, out: Path | None) -> None:
           f"{time.perf_counter() - begun:.0f} s")  # fmt: skip
     report_search(match)
     if out is not None:
-        from jaxbacklash.report.figures_signature import pattern_region
+        from jaxbacklash.plot.drawing import on_page
 
-        pattern_region(match).savefig(out / "pattern_region.png", dpi=150)
+        on_page(jb.plot.pattern_region, match).savefig(out / "pattern_region.png", dpi=150)
 
 
 def report_search(match: Any) -> None:

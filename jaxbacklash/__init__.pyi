@@ -1,3 +1,4 @@
+from . import plot as plot
 from .causes import Cause as Cause
 from .causes import find_causes as find_causes
 from .criticism import Findings as Findings

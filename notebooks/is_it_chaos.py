@@ -25,10 +25,10 @@ from tempfile import mkdtemp
 import matplotlib.pyplot as plt
 import numpy as np
 from IPython.display import HTML
+from jaxbacklash.report.drawing import to_svg
 
 import jaxbacklash as jb
 from jaxbacklash.report import figures_chaos
-from jaxbacklash.report.drawing import to_svg
 
 jb.start()
 TINY = bool(os.environ.get("JAXBACKLASH_TINY"))  # set by the tests, to be quick

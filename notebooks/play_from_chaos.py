@@ -22,11 +22,11 @@ import os
 
 import numpy as np
 from IPython.display import HTML
+from jaxbacklash.report.drawing import to_svg
 
 import jaxbacklash as jb
 from jaxbacklash.excitation import Harmonic
 from jaxbacklash.report import figures_signature
-from jaxbacklash.report.drawing import to_svg
 from jaxbacklash.signature import Level, exponent_map, play_from_exponents, worth
 
 jb.start()

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from jaxbacklash.report import figures
+from jaxbacklash.plot import joints, models, times
+from jaxbacklash.plot.drawing import on_page
 
 HOSTILE = "</script><script>alert('x')</script><img src=x onerror=alert(1)>&\".csv"
 NOISE, RATE, WINDOW = 3e-5, 500.0, 0.2
@@ -101,13 +102,13 @@ def all_figures():
     torque = 13000.0 * (z - np.clip(z, *EDGES)) + np.random.default_rng(4).normal(size=z.size)
     kept = {"window_starts": starts, "label": "z", "unit": "rad"}
     return {
-        "model": figures.measured_against_model(t, measured, model, noise=NOISE, **kept),
-        "residual": figures.residual_in_time(t, residual, window_edges=starts, window_rms=rms),
-        "phase": figures.phase_plane(z, dz, edges=EDGES, model_z=model, model_dz=dz),
-        "force": figures.restoring_force(z, torque, model_z=law, model_torque=dead, edges=EDGES, unit="N m"),
-        "stages": figures.error_by_stage(stages()),
-        "ranking": figures.candidate_ranking(stages()[0]["candidates"], current=12.9),
-        "profile": figures.misfit_profile(np.linspace(-1, 1, 11), np.ones(10), np.arange(10), xlabel="z′ [rad/s]"),
+        "model": on_page(times.measured_against_model, t, measured, model, noise=NOISE, **kept),
+        "residual": on_page(times.residual_in_time, t, residual, window_edges=starts, window_rms=rms),
+        "phase": on_page(joints.phase_plane, z, dz, edges=EDGES, model_z=model, model_dz=dz),
+        "force": on_page(joints.restoring_force, z, torque, model_z=law, model_torque=dead, edges=EDGES, unit="N m"),
+        "stages": on_page(models.error_by_stage, stages()),
+        "ranking": on_page(models.candidate_ranking, stages()[0]["candidates"], current=12.9),
+        "loop": on_page(joints.force_loop, z, torque, torque, level=10.0, unit="N m", length_unit="rad"),
     }
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import jaxbacklash as jb
-from jaxbacklash.report import figures
+from jaxbacklash.plot.drawing import svg_of
 
 INERTIA, STIFFNESS, DAMPING, RATE = 3.16, 15095.0, 22.0, 500.0
 TRUTH = {
@@ -67,7 +67,7 @@ def test_curves_and_their_picture():
     assert np.all(np.abs(found.h2[found.used]) >= np.abs(found.h1[found.used]) * (1 - 1e-9))
     assert np.max(found.coherence) <= 1.0 + 1e-12
     assert "inertia" in str(found)
-    picture = figures.to_svg(figures.frequency_response(found))
+    picture = svg_of(jb.plot.frequency_response, found)
     assert picture.startswith("<svg")
     assert "mathdefault" not in picture, "decades are plain numbers"
 

@@ -10,7 +10,8 @@ import pytest
 from matplotlib.image import imread
 
 from jaxbacklash import BadInput
-from jaxbacklash.report import figures
+from jaxbacklash.plot.drawing import on_page, svg_of, to_png_data_uri, to_svg
+from jaxbacklash.plot.models import error_by_stage
 from jaxbacklash.report.html import Panel, render, write_report
 
 from .report_samples import HOSTILE, all_figures, motion, result, stages
@@ -20,7 +21,7 @@ from .report_samples import HOSTILE, all_figures, motion, result, stages
 def page():
     t, measured, model, starts, residual, _ = motion()
     series = {"t": t, "measured": measured, "model": model, "residual_over_noise": residual}
-    drawn = {name: figures.to_svg(figure) for name, figure in all_figures().items()}
+    drawn = {name: to_svg(figure) for name, figure in all_figures().items()}
     panels = [Panel(name, f"What {name} shows.", svg, name) for name, svg in drawn.items()]
     return render(result(HOSTILE), panels, series | {"window_starts": starts, "label": "z", "unit": "rad"})
 
@@ -80,7 +81,7 @@ def test_hostile_names_are_text(page):
     assert not [a for tag, a in tags if tag == "img"]
     assert not [a for _, a in tags if any(name.startswith("on") for name in a)]
     assert "&lt;/script&gt;&lt;script&gt;alert(" in page
-    panel = Panel("<b>title", 'a "quoted" <i>', figures.to_svg(figures.error_by_stage([])), '"><script>', "<u>detail")
+    panel = Panel("<b>title", 'a "quoted" <i>', svg_of(error_by_stage, []), '"><script>', "<u>detail")
     text = render({"record": {"path": "a"}}, [panel, panel])
     assert not {"b", "i", "u"} & {tag for tag, attributes in Tags(text).found if not attributes}
     assert 'id="figure-script"' in text
@@ -98,7 +99,7 @@ def test_page_of_a_bare_result(command):
 
 
 def test_a_panel_takes_an_image_and_refuses_the_rest():
-    image = figures.to_png_data_uri(figures.error_by_stage([]), 20)
+    image = to_png_data_uri(on_page(error_by_stage, []), 20)
     assert f'<img class="paper" src="{image}"' in render({}, [Panel("t", "s", image, "a")])
     with pytest.raises(ValueError, match="figure_svg"):
         render({}, [Panel("t", "s", "<script>", "a")])

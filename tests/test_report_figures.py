@@ -7,11 +7,14 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from jaxbacklash.report import figures
+from jaxbacklash.plot.drawing import on_page, to_png_data_uri, to_svg
+from jaxbacklash.plot.joints import phase_plane, restoring_force
+from jaxbacklash.plot.models import candidate_ranking, error_by_stage
+from jaxbacklash.plot.style import error_decimals, format_interval, format_value, pretty_unit, short
+from jaxbacklash.plot.thinning import envelope, extremes
+from jaxbacklash.plot.times import measured_against_model, residual_in_time
+from jaxbacklash.plot.zooms import worst_and_typical
 from jaxbacklash.report.series import series_json
-from jaxbacklash.report.style import error_decimals, format_interval, format_value, pretty_unit, short
-from jaxbacklash.report.thinning import envelope, extremes
-from jaxbacklash.report.zooms import worst_and_typical
 
 from .report_samples import EDGES, HOSTILE, NOISE, RATE, all_figures
 
@@ -59,18 +62,18 @@ def test_thinning_keeps_peaks_and_breaks():
 def test_figures_draw_and_leave_matplotlib_alone():
     before = dict(matplotlib.rcParams)
     for name, figure in all_figures().items():
-        svg = figures.to_svg(figure)
+        svg = to_svg(figure)
         assert isinstance(figure, Figure)
         assert svg.startswith("<svg")
         assert svg.endswith("</svg>")
         assert len(svg) < 1_000_000, name
         assert "currentColor" in svg
-        assert figures.to_png_data_uri(figure, 40).startswith("data:image/png;base64,")
+        assert to_png_data_uri(figure, 40).startswith("data:image/png;base64,")
     assert dict(matplotlib.rcParams) == before
 
 
 def test_figures_say_what_they_show():
-    drawn = {name: figures.to_svg(figure) for name, figure in all_figures().items()}
+    drawn = {name: to_svg(figure) for name, figure in all_figures().items()}
     assert "total play b = 0.02618 rad = 1.500 deg" in drawn["force"]
     assert "total play b = 0.02618 rad = 1.500 deg" in drawn["phase"]
     assert "torque of the joint [N m]" in drawn["force"]
@@ -81,37 +84,35 @@ def test_figures_say_what_they_show():
 
 EMPTY = {"window_starts": [], "label": "z", "unit": "rad", "noise": None}
 NOTHING = {
-    "no samples": lambda: figures.measured_against_model([], [], [], **EMPTY),
-    "three samples": lambda: figures.measured_against_model([0, 1, 2], [1, 1, 1], [1, np.nan, 1], **EMPTY),
-    "no model": lambda: figures.measured_against_model(np.arange(9), np.ones(9), np.full(9, np.nan), **EMPTY),
-    "no residual": lambda: figures.residual_in_time([], [], window_edges=[], window_rms=[]),
-    "all nan": lambda: figures.residual_in_time([0, 1], [np.nan] * 2, window_edges=[0], window_rms=[np.nan]),
-    "huge": lambda: figures.residual_in_time([0, 1], [1e7, -3], window_edges=[0, 1], window_rms=[7e6]),
-    "no motion": lambda: figures.phase_plane([], [], edges=None),
-    "standing still": lambda: figures.phase_plane([0.1, 0.1], [0, 0], edges=(None, 0.1)),
-    "no torque": lambda: figures.restoring_force([], [], model_z=None, model_torque=None, edges=None, unit="N"),
-    "no play": lambda: figures.restoring_force([0], [1], model_z=[], model_torque=[], edges=[np.nan, 1], unit="N"),
-    "no stages": lambda: figures.error_by_stage([]),
-    "null stage": lambda: figures.error_by_stage([{"rms_over_noise": None}]),
-    "no candidates": lambda: figures.candidate_ranking([]),
-    "null candidate": lambda: figures.candidate_ranking([{"name": "dahl", "predicted_rms_over_noise": None}]),
-    "no bins": lambda: figures.misfit_profile([], [], [], xlabel=""),
-    "one bin": lambda: figures.misfit_profile([0.0], [2.0], [3], xlabel="a $b"),
+    "no samples": lambda: on_page(measured_against_model, [], [], [], **EMPTY),
+    "three samples": lambda: on_page(measured_against_model, [0, 1, 2], [1, 1, 1], [1, np.nan, 1], **EMPTY),
+    "no model": lambda: on_page(measured_against_model, np.arange(9), np.ones(9), np.full(9, np.nan), **EMPTY),
+    "no residual": lambda: on_page(residual_in_time, [], [], window_edges=[], window_rms=[]),
+    "all nan": lambda: on_page(residual_in_time, [0, 1], [np.nan] * 2, window_edges=[0], window_rms=[np.nan]),
+    "huge": lambda: on_page(residual_in_time, [0, 1], [1e7, -3], window_edges=[0, 1], window_rms=[7e6]),
+    "no motion": lambda: on_page(phase_plane, [], [], edges=None),
+    "standing still": lambda: on_page(phase_plane, [0.1, 0.1], [0, 0], edges=(None, 0.1)),
+    "no torque": lambda: on_page(restoring_force, [], [], model_z=None, model_torque=None, edges=None, unit="N"),
+    "no play": lambda: on_page(restoring_force, [0], [1], model_z=[], model_torque=[], edges=[np.nan, 1], unit="N"),
+    "no stages": lambda: on_page(error_by_stage, []),
+    "null stage": lambda: on_page(error_by_stage, [{"rms_over_noise": None}]),
+    "no candidates": lambda: on_page(candidate_ranking, []),
+    "null candidate": lambda: on_page(candidate_ranking, [{"name": "dahl", "predicted_rms_over_noise": None}]),
 }
 
 
 @pytest.mark.parametrize("case", NOTHING)
 def test_figures_of_nearly_nothing(case):
-    assert figures.to_svg(NOTHING[case]()).startswith("<svg")
+    assert to_svg(NOTHING[case]()).startswith("<svg")
 
 
 def test_long_record_stays_small():
     t = np.arange(300_000) / RATE
     z = 0.02 * np.sin(20 * t)
     starts = np.arange(0, 600, 0.2)
-    whole = figures.measured_against_model(t, z, z, window_starts=starts, label="z", unit="rad", noise=NOISE)
-    assert len(figures.to_svg(whole)) < 1_000_000
-    assert len(figures.to_svg(figures.phase_plane(z, np.gradient(z, t), edges=EDGES))) < 1_000_000
+    whole = on_page(measured_against_model, t, z, z, window_starts=starts, label="z", unit="rad", noise=NOISE)
+    assert len(to_svg(whole)) < 1_000_000
+    assert len(to_svg(on_page(phase_plane, z, np.gradient(z, t), edges=EDGES))) < 1_000_000
     data = json.loads(series_json({"t": t, "measured": z, "model": z, "residual_over_noise": z}))
     assert len(data["t"]) <= 20_000
     assert data["samples"] == 300_000

@@ -8,7 +8,7 @@ import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.cross_check import cross_check
-from jaxbacklash.report import figures
+from jaxbacklash.plot.drawing import svg_of
 from jaxbacklash.report.result import cross_check as cross_check_json
 from jaxbacklash.report.skeleton_report import skeleton_panels
 
@@ -81,8 +81,8 @@ def test_a_multisine_is_told_and_drawn(tmp_path):
     panels = skeleton_panels(found)
     assert [panel.anchor for panel in panels][:2] == ["envelopes", "frequency"]
     assert all(panel.figure_svg.startswith("<svg") for panel in panels)
-    for draw in (figures.backbone_and_damping, figures.skeleton_force):
-        assert figures.to_svg(draw(found)).startswith("<svg")
+    for draw in (jb.plot.backbone, jb.plot.skeleton):
+        assert svg_of(draw, found).startswith("<svg")
 
 
 # ---- Beside a fit ----

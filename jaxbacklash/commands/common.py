@@ -71,7 +71,7 @@ def out_folder(path: Path | None) -> Path | None:
     except OSError as error:
         raise BadInput(f"--out {path}: cannot make this folder ({error.strerror}), wanted a folder to write into") from None
     with suppress(RuntimeError):  # no more threads: it is loaded when it is needed
-        Thread(target=import_module, args=("..report.figures", __package__), daemon=True).start()
+        Thread(target=import_module, args=("..plot.fits", __package__), daemon=True).start()
     return path
 
 

@@ -35,12 +35,16 @@ class Attractor(NamedTuple):
 
 
 class Basins(NamedTuple):
-    """``number`` (M, N): which of ``attractors`` the start ``y`` (M,), ``dy`` (N,) leads to, -1 where it settles on none."""
+    """``number`` (M, N): which of ``attractors`` the start ``y`` (M,), ``dy`` (N,) leads to, -1 where it settles on none.
+
+    ``unit`` of ``y``: ``"half play"`` or ``"rad"``.
+    """
 
     y: np.ndarray
     dy: np.ndarray
     number: np.ndarray
     attractors: list[Attractor]
+    unit: str = "rad"
 
 
 def basins(
@@ -92,7 +96,8 @@ def basins(
         inside = number == j
         attractors.append(Attractor(T, float(np.median(exponent[inside])), points[:, 0], points[:, 1], float(inside.mean())))
     rank = np.append(np.argsort(order), -1)
-    return Basins(y, dy, rank[number].reshape(y.size, dy.size), attractors)
+    unit = "half play" if family.time_unit == "1/omega_0" else "rad"
+    return Basins(y, dy, rank[number].reshape(y.size, dy.size), attractors, unit)
 
 
 def _same(period: int, points: np.ndarray, others: np.ndarray, near: float) -> bool:

@@ -5,19 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from .. import plot
+from ..plot.drawing import svg_of
 from ..records import MeasuredSeries
 from ..timeseries import ChaosReport
-from .drawing import to_svg
-from .figures_chaos import (
-    chaos_series,
-    correlation_sums,
-    delay_choice,
-    dimension_choice,
-    driven_growth,
-    phase_plot,
-    stretching_curves,
-    surrogates_and_walk,
-)
 from .html import Panel, write_report
 
 
@@ -30,23 +21,23 @@ def chaos_panels(found: ChaosReport, source: MeasuredSeries) -> list[Panel]:
     """The pictures of a chaos report with a sentence each."""
     return [
         Panel("The series", "The grey stretch above is what is drawn below.",
-              to_svg(chaos_series(found, source.name, source.unit)), "series"),
+              svg_of(plot.series, found, source.name, source.unit), "series"),
         *_driven(found, source),
         Panel("The state, one delay apart",
               "A thin, folded sheet is a sign of few degrees of freedom; a cloud is a sign of noise.",
-              to_svg(phase_plot(found, source.unit)), "phase"),
-        Panel("How neighbours part", _parting(found), to_svg(stretching_curves(found)), "stretching",
+              svg_of(plot.attractor, found, source.unit), "phase"),
+        Panel("How neighbours part", _parting(found), svg_of(plot.stretching, found), "stretching",
               "The mean logarithm of the distance between states that were near. Exponential growth is a straight "
               "line. It begins where noise no longer hides it and ends where neighbours are as far apart as any two states. The "
               "exponent itself comes from maps fitted to neighbourhoods, whose product does not saturate."),
-        Panel("Surrogates and 0-1 test", _surrogates(found), to_svg(surrogates_and_walk(found)), "surrogates",
+        Panel("Surrogates and 0-1 test", _surrogates(found), svg_of(plot.surrogates, found), "surrogates",
               "Surrogates have the values and the spectrum of the series and are otherwise random. If the series is no better "
               "predicted than they are, linear noise explains it. In the 0-1 test a walk driven by the series wanders for chaos "
               "and noise, and circles for regular motion."),
         Panel("Delay", f"The delay taken is {found.delay.samples} samples: {found.delay.why}.",
-              to_svg(delay_choice(found)), "delay"),
-        Panel("Embedding dimension", _dimension(found), to_svg(dimension_choice(found)), "dimension"),
-        Panel("Correlation dimension", _correlation(found), to_svg(correlation_sums(found)), "correlation"),
+              svg_of(plot.delay, found), "delay"),
+        Panel("Embedding dimension", _dimension(found), svg_of(plot.dimension, found), "dimension"),
+        Panel("Correlation dimension", _correlation(found), svg_of(plot.correlation, found), "correlation"),
     ]  # fmt: skip
 
 
@@ -60,7 +51,7 @@ def _driven(found: ChaosReport, source: MeasuredSeries) -> list[Panel]:
         said += " The verdict rests on this picture; the ones below look at the series as if nothing had driven it."
     name = "z" if source.name == "y" else source.name
     return [
-        Panel("Under the measured drive", said, to_svg(driven_growth(found, name, source.unit)), "driven",
+        Panel("Under the measured drive", said, svg_of(plot.driven_growth, found, name, source.unit), "driven",
               "The acceleration of the motion is fitted by tables of position and velocity and by the drive, all over the "
               "record, so no states need recur. On stretches it was not fitted to, the law misses the acceleration by "
               f"{100 * one.error:.2g} %. Its slope tells how a small difference changes from moment to moment; the drive is the "

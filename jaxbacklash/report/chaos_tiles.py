@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from .style import is_number, short
+from ..plot.style import is_number, short
 
 
 def chaos_tiles(result: Mapping[str, Any]) -> list[dict[str, str]]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from ..fitting import measures, percent
-from .style import format_parts, is_number, pretty_unit, short
+from ..plot.style import format_parts, is_number, pretty_unit, short
 
 BASE = ("backlash", "stiffness", "damping")
 LABELS = {"backlash": "total play b", "stiffness": "contact stiffness k", "damping": "viscous damping c"}

@@ -14,9 +14,9 @@ from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from ..errors import BadInput
+from ..plot.style import GAP, HELDOUT, MEASURED, MODEL
 from ..whole_file import write_whole
 from .series import series_json
-from .style import GAP, HELDOUT, MEASURED, MODEL
 from .summary import summarise
 
 
@@ -24,8 +24,8 @@ from .summary import summarise
 class Panel:
     """One picture on the page.
 
-    Attributes: ``title`` a heading; ``sentence`` what to see in it; ``figure_svg`` from `figures.to_svg`, or an address
-    from `figures.to_png_data_uri`; ``anchor`` its name in links; ``detail`` more words behind a fold.
+    Attributes: ``title`` a heading; ``sentence`` what to see in it; ``figure_svg`` from `plot.drawing.to_svg`, or an
+    address from `plot.drawing.to_png_data_uri`; ``anchor`` its name in links; ``detail`` more words behind a fold.
     """
 
     title: str

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from ..plot.columns import column_over_rows
+from ..plot.drawing import svg_of
 from ..records.description import Description
-from .drawing import to_svg
-from .figures_columns import column_over_rows
 from .html import Panel, write_report
 
 MOST_PICTURES = 24
@@ -36,6 +36,6 @@ def panels(found: Description) -> list[Panel]:
         span = "" if facts.low is None else f"{facts.low:.6g} to {facts.high:.6g} {facts.unit}".strip()
         sentence = ". ".join(text.rstrip(".") for text in facts.findings) or span
         if facts.column.values.dtype.kind == "f":
-            picture = to_svg(column_over_rows(facts, begins))
+            picture = svg_of(column_over_rows, facts, begins)
             shown.append(Panel(f"#{facts.number} {facts.name}{role}", f"{sentence}.", picture, f"column-{facts.number}"))
     return shown

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from .drawing import to_png_data_uri, to_svg
-from .figures_maps import LABELS, exponent_and_period_map, exponent_curve
+from ..plot.drawing import on_page, to_png_data_uri, to_svg
+from ..plot.maps import LABELS, exponent_and_period_map, exponent_curve
 from .html import Panel, write_report
 
 
@@ -79,15 +79,15 @@ def _cut(map_: Any, names: list[str]) -> tuple[dict[str, int], str]:
 
 def _two(map_: Any, at: dict[str, int], names: list[str]) -> Figure:
     axes = [map_.coordinates[name] for name in names]
-    return exponent_and_period_map(
-        axes[0].data, axes[1].data, map_.values("lyapunov", at), map_.values("period", at), names=names,
+    return on_page(
+        exponent_and_period_map, axes[0].data, axes[1].data, map_.values("lyapunov", at), map_.values("period", at), names=names,
         units=[axis.attrs["units"] for axis in axes], exponent_unit=map_.variables["lyapunov"].attrs["units"],
     )  # fmt: skip
 
 
 def _one(map_: Any, at: dict[str, int], name: str) -> Figure:
     axis = map_.coordinates[name]
-    return exponent_curve(
-        axis.data, map_.values("lyapunov", at), map_.values("lyapunov_stderr", at), name=name, unit=axis.attrs["units"],
-        exponent_unit=map_.variables["lyapunov"].attrs["units"], samples=map_.values("poincare", at),
+    return on_page(
+        exponent_curve, axis.data, map_.values("lyapunov", at), map_.values("lyapunov_stderr", at), name=name,
+        unit=axis.attrs["units"], exponent_unit=map_.variables["lyapunov"].attrs["units"], samples=map_.values("poincare", at),
     )  # fmt: skip

@@ -9,8 +9,9 @@ from typing import Any
 
 from ..criticism import Findings, Refinement
 from ..fitting import error_in_words
+from ..plot.drawing import svg_of
+from ..plot.models import candidate_ranking, error_by_stage
 from .diagnose_report import failure_panels
-from .figures import candidate_ranking, error_by_stage, to_svg
 from .fit_report import pictures, series
 from .html import Panel, write_report
 
@@ -34,17 +35,15 @@ def refine_report(
     last : where the last model fails; None of a model that explains the record
     """
     fit = refinement.fit
-    joint = {panel.anchor: panel for panel in pictures(
-        fit.system, fit.records[0], fit.score, fit.noise[0], fit.translational, fit.per_inertia
-    )}  # fmt: skip
+    joint = {panel.anchor: panel for panel in pictures(fit)}
     panels = [_errors(result), *_rankings(result["stages"], refinement.verdict.complete)]
     base = first()
     if base is not None:
-        panels += _failures(base, "the base model", "base", fit.translational)
+        panels += _failures(base, "the base model", "base")
     if len(refinement.stages) > 1 or base is None:
         have = " + ".join(["the base model", *refinement.effects])
         rest = joint["residual"]
-        panels += [_rest(refinement, have, rest)] if last is None else _failures(last, have, "last", fit.translational)
+        panels += [_rest(refinement, have, rest)] if last is None else _failures(last, have, "last")
     panels += [joint[name] for name in ("loop", "model", "force", "phase") if name in joint]
     write_report(path, result, panels, series(fit.records[0], fit.score, fit.translational))
 
@@ -55,7 +54,7 @@ def _errors(result: dict[str, Any]) -> Panel:
     return Panel(
         "Prediction error, stage by stage",
         f"Each stage adds the effect that the record speaks for most; 1 means that noise alone is left{where}.",
-        to_svg(error_by_stage(result["stages"])),
+        svg_of(error_by_stage, result["stages"]),
         "error",
     )
 
@@ -78,27 +77,27 @@ def _rankings(stages: list[dict[str, Any]], complete: bool) -> list[Panel]:
             if max(c["evidence"] or 0.0 for c in stage["candidates"]) > STRONG:
                 why = "none takes away enough of what is left to explain it"
             sentence = f"What one more effect would bring to {have}: {why}."
-        drawn = candidate_ranking(stage["candidates"], current=stage["rms_over_noise"])
+        drawn = svg_of(candidate_ranking, stage["candidates"], current=stage["rms_over_noise"])
         panels.append(ranking_panel(f"What is missing in {have}?", sentence, drawn, number))
     return panels
 
 
-def ranking_panel(title: str, sentence: str, drawn: Any, number: int = 0) -> Panel:
+def ranking_panel(title: str, sentence: str, drawn: str, number: int = 0) -> Panel:
     """The picture of a ranking."""
     return Panel(
-        title, sentence, to_svg(drawn), f"ranking-{number}",
+        title, sentence, drawn, f"ranking-{number}",
         "Bars show the prediction error that the sensitivities of the fitted model predict, at the best strength and shape of "
         "each effect. The most telling ones are then fitted for real, and error and evidence of those are what that fit found; "
         "a predicted evidence can be too high, since predictions are linear.",
     )  # fmt: skip
 
 
-def _failures(found: Findings, have: str, anchor: str, translational: bool) -> list[Panel]:
+def _failures(found: Findings, have: str, anchor: str) -> list[Panel]:
     """The pictures of what one model misses, told apart from another model's by their titles."""
     empty = set() if found.significant or found.surface is None else {"fails"}
     if found.surface is not None and found.surface.share < TELLING:
         empty.add("depends")
-    panels = [panel for panel in failure_panels(found, translational) if panel.anchor not in empty]
+    panels = [panel for panel in failure_panels(found) if panel.anchor not in empty]
     told = " ".join(found.sentences)
     return [
         Panel(

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from .drawing import column
-from .thinning import extremes
+from ..plot.drawing import column
+from ..plot.thinning import extremes
 
 LIMIT = 20_000  # points; a browser draws so many without effort
 EXACT = 22

@@ -7,6 +7,8 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from ..fitting import percent
+from ..plot.models import error_with, stage_name
+from ..plot.style import format_evidence, format_interval, is_number, short, with_unit
 from .chaos_tiles import chaos_tiles, chosen
 from .facts import (
     BASE,
@@ -23,8 +25,6 @@ from .facts import (
     share,
     skeleton_tables,
 )
-from .figures_model import error_with, stage_name
-from .style import format_evidence, format_interval, is_number, short, with_unit
 
 SETTLED = ("complete", "chaotic", "regular", "stochastic")  # verdicts that leave nothing open
 MARKS = {"found": "✓", "one-sided": "◐", "given": "·"}  # a sign beside each word, for those who see no colour

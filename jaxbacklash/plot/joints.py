@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap, to_rgb
-from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from .drawing import column, drawn_in_style, empty_figure, in_degrees, new_figure
-from .style import GAP, INK, MEASURED, MEDIUM, MODEL, pretty_unit, short, with_unit
+from .drawing import Where, column, empty, in_degrees, ink, legend_above, panels, picture
+from .style import GAP, MEASURED, MEDIUM, MODEL, pretty_unit, short, with_unit
 from .thinning import strided
 
 CELLS = (760, 380)  # of a density, across a whole figure and up
@@ -21,8 +20,10 @@ DENSE = 600_000  # points that a trajectory is filled in to, so that a coarse ra
 POINTS = 30_000  # measured points that are drawn one by one
 
 
-@drawn_in_style
-def phase_plane(z: Any, dz: Any, *, edges: Any, model_z: Any = None, model_dz: Any = None, unit: str = "rad") -> Figure:
+@picture
+def phase_plane(
+    z: Any, dz: Any, *, edges: Any, model_z: Any = None, model_dz: Any = None, unit: str = "rad", ax: Where = None
+) -> list[Axes]:
     """How often the joint passes each relative position and speed, with the play between its two edges.
 
     Parameters
@@ -31,38 +32,34 @@ def phase_plane(z: Any, dz: Any, *, edges: Any, model_z: Any = None, model_dz: A
     edges : lower and upper edge of the play [unit], or None
     model_z, model_dz : (M,) the same of the model, drawn beside it on the same scales
     unit : ``"rad"`` or ``"m"``
-
-    Returns
-    -------
-    Figure
+    ax : where to draw
     """
     paths = [("measured", column(z), column(dz), MEASURED)]
     if model_z is not None and model_dz is not None:
         paths.append(("model", column(model_z), column(model_dz), MODEL))
     shown = [np.isfinite(across) & np.isfinite(up) for _, across, up, _ in paths]
     if max(int(s.sum()) for s in shown) < 2:
-        return empty_figure("No motion to draw.")
+        return empty(ax, "No motion to draw.")
     widths = [_reach(np.concatenate([path[k][s] for path, s in zip(paths, shown)])) for k in (1, 2)]
     play = play_edges(edges)
     if play:  # both edges stay in the picture, however little the joint moves
         margin = 0.15 * (play[1] - play[0])
         widths[0] = (min(widths[0][0], play[0] - margin), max(widths[0][1], play[1] + margin))
-    figure = new_figure(MEDIUM)
-    axes = figure.subplots(1, len(paths), sharex=True, sharey=True, squeeze=False)[0]
-    for ax, (name, across, up, colour) in zip(axes, paths):
-        _density(ax, across, up, widths, colour, CELLS[0] // len(paths))
-        mark_play(ax, play)
-        ax.set(title=name, xlabel=with_unit("z", unit), xlim=widths[0], ylim=widths[1])
-        ax.grid(False)
-        ax.xaxis.set_major_locator(MaxNLocator(6 if len(paths) > 1 else 9))
+    axes = panels(ax, 1, len(paths), height=MEDIUM, sharex=True, sharey=True)
+    for one, (name, across, up, colour) in zip(axes, paths):
+        _density(one, across, up, widths, colour, CELLS[0] // len(paths))
+        mark_play(one, play)
+        one.set(xlabel=with_unit("z", unit), xlim=widths[0], ylim=widths[1])
+        one.set_title(name, loc="left")
+        one.grid(False)
+        one.xaxis.set_major_locator(MaxNLocator(6 if len(paths) > 1 else 9))
     axes[0].set_ylabel(with_unit("z′", f"{unit}/s"))
     if play:
-        shade = Patch(color=GAP, alpha=0.4, lw=0)
-        figure.legend([shade], [_play_text(play, unit)], loc="outside upper right")
-    return figure
+        legend_above(axes[-1:], [Patch(color=GAP, alpha=0.4, lw=0)], [_play_text(play, unit)])
+    return axes
 
 
-@drawn_in_style
+@picture
 def restoring_force(
     z: Any,
     torque_points: Any,
@@ -73,7 +70,8 @@ def restoring_force(
     unit: str,
     length_unit: str = "rad",
     label: str = "torque of the joint",
-) -> Figure:
+    ax: Where = None,
+) -> list[Axes]:
     """Measured torque against relative motion as points, the fitted law as a line, the edges of the play marked.
 
     Parameters
@@ -83,17 +81,14 @@ def restoring_force(
     edges : lower and upper edge of the play [length_unit], or None when it was not found
     unit, length_unit : ``"N m"`` and ``"rad"``; ``"rad/s^2"`` per unit inertia; ``"N"``, ``"m"`` of a translating mass
     label : what the torque is
-
-    Returns
-    -------
-    Figure
+    ax : where to draw
     """
     z, points = column(z), column(torque_points)
     line_z, line = column(model_z), column(model_torque)
     if not z.size and not line_z.size:
-        return empty_figure("No torque to draw.")
-    figure = new_figure(MEDIUM)
-    ax = figure.subplots()
+        return empty(ax, "No torque to draw.")
+    axes = panels(ax, height=MEDIUM)
+    ax = axes[0]
     thin = strided(z.size, POINTS)
     many = z[thin].size
     opacity = 0.5 if many > 4000 else 0.7
@@ -103,20 +98,21 @@ def restoring_force(
     ax.plot(line_z, line, color=MODEL, lw=1.6, label="model")
     play = play_edges(edges)
     mark_play(ax, play)
-    ax.axhline(0.0, color=INK, lw=0.5)
+    ax.axhline(0.0, color=ink(ax), lw=0.5)
     ax.margins(x=0.02, y=0.08)
     if play:
         _name_play(ax, play, length_unit)
     ax.set(xlabel=with_unit("z", length_unit), ylabel=with_unit(label, unit))
     in_degrees(ax, "top", length_unit)
     ax.legend(loc="best", markerscale=1.2)
-    return figure
+    return axes
 
 
-@drawn_in_style
+@picture
 def force_loop(
-    x: Any, force: Any, model: Any, *, level: float, unit: str, length_unit: str = "m", label: str = "transmitted force T"
-) -> Figure:
+    x: Any, force: Any, model: Any, *, level: float, unit: str, length_unit: str = "m", label: str = "transmitted force T",
+    ax: Where = None,
+) -> list[Axes]:  # fmt: skip
     """Transmitted force against base motion, measured and modelled, with the band in which it counts as nothing.
 
     Parameters
@@ -125,27 +121,28 @@ def force_loop(
     force, model : (N,) transmitted force as measured and as predicted [unit]; NaN breaks the lines
     level : force below which the joint counts as carrying nothing [unit]
     unit, length_unit : ``"N"`` and ``"m"``, or ``"N m"`` and ``"rad"``
-
-    Returns
-    -------
-    Figure
+    ax : where to draw
     """
     x, force, model = column(x), column(force), column(model)
     if x.size < 2:
-        return empty_figure("No force to draw.")
-    figure = new_figure(MEDIUM)
-    axes = figure.subplots(1, 2, sharex=True, sharey=True)
+        return empty(ax, "No force to draw.")
+    axes = panels(ax, 1, 2, height=MEDIUM, sharex=True, sharey=True)
     thin = strided(x.size, POINTS)
-    for ax, (name, values, colour) in zip(axes, (("measured", force, MEASURED), ("model", model, MODEL))):
-        ax.axhspan(-level, level, color=GAP, alpha=0.16, lw=0, zorder=0)
-        ax.plot(x[thin], values[thin], color=colour, lw=0.8, rasterized=x[thin].size > 4000)
-        ax.axhline(0.0, color=INK, lw=0.5)
-        ax.set(title=name, xlabel=with_unit("x", length_unit))
-        ax.xaxis.set_major_locator(MaxNLocator(6))
-        ax.margins(x=0.03, y=0.06)
+    pairs = axes if len(axes) == 2 else axes * 2  # on one axes, one over the other
+    for one, (name, values, colour) in zip(pairs, (("measured", force, MEASURED), ("model", model, MODEL))):
+        one.axhspan(-level, level, color=GAP, alpha=0.16 if len(axes) > 1 else 0.08, lw=0, zorder=0)
+        one.plot(x[thin], values[thin], color=colour, lw=0.8, rasterized=x[thin].size > 4000, label=name)
+        one.axhline(0.0, color=ink(one), lw=0.5)
+        one.set(xlabel=with_unit("x", length_unit))
+        if len(axes) > 1:
+            one.set_title(name, loc="left")
+        one.xaxis.set_major_locator(MaxNLocator(6))
+        one.margins(x=0.03, y=0.06)
     axes[0].set_ylabel(with_unit(label, unit))
-    figure.legend([Patch(color=GAP, alpha=0.4, lw=0)], ["a tenth of the sliding force"], loc="outside upper right")
-    return figure
+    shade, words = [Patch(color=GAP, alpha=0.4, lw=0)], ["a tenth of the sliding force"]
+    lines = axes[0].get_lines()[::2] if len(axes) == 1 else []
+    legend_above(axes[-1:], [*lines, *shade], [*(str(line.get_label()) for line in lines), *words])
+    return axes
 
 
 def play_edges(edges: Any) -> tuple[float, float] | None:
@@ -176,7 +173,7 @@ def _play_text(play: tuple[float, float], unit: str) -> str:
 def _name_play(ax: Axes, play: tuple[float, float], unit: str) -> None:
     low, high = play
     place = ("data", "axes fraction")
-    arrow = {"arrowstyle": "<->", "color": INK, "lw": 0.8}
+    arrow = {"arrowstyle": "<->", "color": ink(ax), "lw": 0.8}
     ax.annotate("", (low, 0.05), (high, 0.05), xycoords=place, arrowprops=arrow)
     ax.annotate(
         _play_text(play, unit), (0.5 * (low + high), 0.065), xycoords=place, ha="center", va="bottom", fontsize=8.0

@@ -3,39 +3,43 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
 
 from ..records.description import ColumnFacts
-from .drawing import drawn_in_style, empty_figure, new_figure
+from .drawing import Where, empty, panels, picture
 from .style import MEASURED, SHORT, with_unit
 from .thinning import envelope
 
 
-@drawn_in_style
-def column_over_rows(facts: ColumnFacts, begins: int) -> Figure:
+@picture
+def column_over_rows(facts: ColumnFacts, begins: int, *, ax: Where = None) -> list[Axes]:
     """A column over its rows, whole above and, below, the stretch in which it moves most.
 
     Parameters
     ----------
     facts : the column
     begins : number that the file gives its first row (1, or the line)
+    ax : where to draw; on one axes, all rows
     """
     values = facts.column.values
     if values.dtype.kind != "f" or not np.isfinite(values).any():
-        return empty_figure("No numbers to draw.")
-    figure = new_figure(SHORT)
-    whole, close = figure.subplots(1, 2, width_ratios=(2, 1))
+        return empty(ax, "No numbers to draw.")
+    axes = panels(ax, 1, 2, height=SHORT, width_ratios=(2, 1))
+    whole = axes[0]
     rows = np.arange(values.size) + float(begins)
     at, low, high = envelope(rows, values)
     whole.fill_between(at, low, high, color=MEASURED, lw=0.8)
     whole.set(ylabel=with_unit(facts.role or facts.name, facts.unit), xlabel="line of the file" if begins > 1 else "row")
     whole.set_xlim(rows[0], rows[-1])
-    whole.set_title("all rows")
+    if len(axes) == 1:
+        return axes
+    close = axes[1]
+    whole.set_title("all rows", loc="left")
     first, last = _busiest(values)
     close.plot(rows[first:last], values[first:last], color=MEASURED, marker=".", ms=3, lw=0.8)
-    close.set_title("where it moves most, row by row")
+    close.set_title("where it moves most, row by row", loc="left")
     close.set(xlim=(rows[first], rows[last - 1]))
-    return figure
+    return axes
 
 
 def _busiest(values: np.ndarray, length: int = 100) -> tuple[int, int]:

@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColormap
-from matplotlib.figure import Figure
 
-from .drawing import column, drawn_in_style, empty_figure, new_figure
-from .style import GAP, HELDOUT, INK, MEASURED, MEDIUM, MODEL, TALL, with_unit
+from .drawing import Where, column, empty, ink, legend_above, panels, picture
+from .style import GAP, HELDOUT, MEASURED, MEDIUM, MODEL, TALL, with_unit
 
 SIGNED = LinearSegmentedColormap.from_list("signed", ["#134a78", MEASURED, "#f4f4f2", MODEL, "#7a2c05"])
 SIGNED.set_bad(GAP)
@@ -29,10 +28,11 @@ def axis_label(name: str, unit: str | None) -> str:
     return with_unit(LABELS.get(name, name), unit)
 
 
-@drawn_in_style
+@picture
 def exponent_and_period_map(
-    x: Any, y: Any, exponent: Any, period: Any, *, names: Sequence[str], units: Sequence[str], exponent_unit: str
-) -> Figure:
+    x: Any, y: Any, exponent: Any, period: Any, *, names: Sequence[str], units: Sequence[str], exponent_unit: str,
+    ax: Where = None,
+) -> list[Axes]:  # fmt: skip
     """Two maps over two parameters: the largest exponent (zero is white) and the period of the motion.
 
     Parameters
@@ -41,42 +41,47 @@ def exponent_and_period_map(
     exponent, period : (M, N); the period as `jaxbacklash.dynamics.periodicity` gives it
     names, units : of x and y
     exponent_unit : of the exponent
-
-    Returns
-    -------
-    Figure
+    ax : where to draw
     """
     x, y = column(x), column(y)
     exponent, period = np.asarray(exponent, dtype=float).T, np.asarray(period).T
     if not np.isfinite(exponent).any():
-        return empty_figure("No cell of this map could be followed.")
-    figure = new_figure(MEDIUM + 0.5, margins=(0.75, 0.1, 0.45, 0.1))
-    left, right = figure.subplots(1, 2, sharex=True, sharey=True, gridspec_kw={"wspace": 0.14})
+        return empty(ax, "No cell of this map could be followed.")
+    axes = panels(
+        ax, 1, 2, height=MEDIUM + 0.5, margins=(0.75, 0.1, 0.45, 0.1), sharex=True, sharey=True, gridspec_kw={"wspace": 0.14}
+    )
+    left = axes[0]
     extent = (*_sides(x), *_sides(y))
     known = exponent[np.isfinite(exponent)]
     reach = max(float(np.quantile(np.abs(known), 0.995)), 1e-9)
     image = left.imshow(exponent, vmin=-reach, vmax=reach, cmap=SIGNED, **_imaged(extent))
-    bar = figure.colorbar(image, ax=left, location="top", shrink=0.9, aspect=30)
+    bar = left.figure.colorbar(image, ax=left, location="top", shrink=0.9, aspect=30)
     bar.set_label(with_unit("largest exponent: orange chaotic, blue regular", exponent_unit), fontsize=8.0)
+    if len(axes) > 1:
+        _periods(axes[1], period, extent)
+    for one in axes:
+        one.grid(visible=False)
+        one.set_xlabel(axis_label(names[0], units[0]))
+    left.set_ylabel(axis_label(names[1], units[1]))
+    return axes
+
+
+def _periods(ax: Axes, period: np.ndarray, extent: tuple[float, float, float, float]) -> None:
+    """The map of periods, a colour for each."""
     classes = np.clip(period, -1, PERIODS + 1) + 1
-    image = right.imshow(
+    image = ax.imshow(
         classes, cmap=ListedColormap(PERIOD_COLOURS), norm=BoundaryNorm(np.arange(-0.5, 9.5), 9), **_imaged(extent)
     )
-    bar = figure.colorbar(image, ax=right, location="top", shrink=0.9, aspect=30, ticks=range(9))
+    bar = ax.figure.colorbar(image, ax=ax, location="top", shrink=0.9, aspect=30, ticks=range(9))
     bar.ax.set_xticklabels(["none", "chaos", *PERIOD_NAMES[2:8], f">{PERIODS}"], fontsize=7.0)
     bar.set_label("periods of the drive in one of the motion", fontsize=8.0)
-    for ax in (left, right):
-        ax.grid(visible=False)
-        ax.set_xlabel(axis_label(names[0], units[0]))
-    left.set_ylabel(axis_label(names[1], units[1]))
-    return figure
 
 
-@drawn_in_style
+@picture
 def exponent_curve(
     x: Any, exponent: Any, stderr: Any, *, name: str, unit: str, exponent_unit: str, samples: Any = None, title: str = "",
-    play: tuple[float, float] | None = (-1.0, 1.0), position: str = "p",
-) -> Figure:  # fmt: skip
+    play: tuple[float, float] | None = (-1.0, 1.0), length: str = "half plays", ax: Where = None,
+) -> list[Axes]:  # fmt: skip
     """The largest exponent against one parameter with its error bar; below, if given, the bifurcation diagram.
 
     Parameters
@@ -86,30 +91,29 @@ def exponent_curve(
     name, unit, exponent_unit : words for the axes
     samples : (S, N) stroboscopic samples of the position [half plays, or the system's unit]; None: only the curve
     play : edges of the play in the samples' unit, drawn as a band; None: no band
-    position : words for the samples' axis
-
-    Returns
-    -------
-    Figure
+    length : unit of the samples
+    ax : where to draw
     """
     x, exponent, stderr = column(x), column(exponent), column(stderr)
-    figure = new_figure(TALL if samples is not None else MEDIUM, margins=(0.75, 0.1, 0.45, 0.5 if title else 0.35))
-    axes = figure.subplots(2 if samples is not None else 1, 1, sharex=True, squeeze=False, gridspec_kw={"hspace": 0.08})[:, 0]
+    axes = panels(
+        ax, 2 if samples is not None else 1, height=TALL if samples is not None else MEDIUM,
+        margins=(0.75, 0.1, 0.45, 0.5 if title else 0.35), sharex=True, gridspec_kw={"hspace": 0.08},
+    )  # fmt: skip
     top = axes[0]
-    top.axhline(0.0, color=INK, lw=0.8)
+    top.axhline(0.0, color=ink(top), lw=0.8)
     wide = np.nan_to_num(2.0 * stderr)
     top.fill_between(x, exponent - wide, exponent + wide, color=MODEL, alpha=0.25, lw=0, label="±2 standard errors")
     top.plot(x, exponent, color=MODEL, lw=0.7)
     top.plot(x, np.where(exponent > wide, exponent, np.nan), ".", color=MODEL, ms=4.0, mew=0, label="chaotic: above zero")
     top.plot(x, np.where(exponent <= wide, exponent, np.nan), ".", color=MEASURED, ms=4.0, mew=0, label="not above zero")
     top.set(ylabel=with_unit("largest exponent", exponent_unit), xlim=(x.min(), x.max()))
-    top.set_title(title)
-    top.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2)
-    if samples is not None:
+    top.set_title(title, loc="left")
+    legend_above(axes)
+    if samples is not None and len(axes) > 1:
         scatter_samples(axes[1], x, np.asarray(samples), MEASURED, play)
-        axes[1].set_ylabel(f"{position} at whole periods")
+        axes[1].set_ylabel("p at whole periods" if length == "half plays" else with_unit("z at whole periods", length))
     axes[-1].set_xlabel(axis_label(name, unit))
-    return figure
+    return axes
 
 
 def scatter_samples(ax: Axes, x: np.ndarray, samples: np.ndarray, colour: str, play: tuple[float, float] | None) -> None:
@@ -122,12 +126,13 @@ def scatter_samples(ax: Axes, x: np.ndarray, samples: np.ndarray, colour: str, p
     ax.grid(visible=False)
 
 
-@drawn_in_style
+@picture
 def bifurcation_diagram(
     x: Any, branches: dict[str, Any], *, name: str, unit: str, length: str = "half plays",
-    play: tuple[float, float] | None = (-1.0, 1.0),
-) -> Figure:  # fmt: skip
-    """Stroboscopic samples against one parameter: swept up, swept down, and from many starts, one above the other.
+    play: tuple[float, float] | None = (-1.0, 1.0), ax: Where = None,
+) -> list[Axes]:  # fmt: skip
+    """Stroboscopic samples against one parameter: swept up, swept down, and from many starts, one above the other. On one axes,
+    all in one.
 
     Parameters
     ----------
@@ -135,30 +140,31 @@ def bifurcation_diagram(
     branches : by a name for the legend, (..., N) samples
     name, unit : of the parameter; length: unit of the samples
     play : edges of the play in that unit, drawn as a band; None: no band
-
-    Returns
-    -------
-    Figure
+    ax : where to draw
     """
     x = column(x)
     shown = {label: np.asarray(s, dtype=float).reshape(-1, x.size) for label, s in branches.items()}
     if not shown:
-        return empty_figure("No samples to draw.")
-    figure = new_figure(1.1 + 1.7 * len(shown))
-    axes = figure.subplots(len(shown), 1, sharex=True, sharey=True, squeeze=False)[:, 0]
-    for ax, (label, samples), colour in zip(axes, shown.items(), cycle((MEASURED, MODEL, HELDOUT))):
-        scatter_samples(ax, x, samples, colour, play)
-        ax.set(ylabel=f"{'p' if length == 'half plays' else 'z'} [{length}]", xlim=(x.min(), x.max()))
-        ax.set_title(label)
+        return empty(ax, "No samples to draw.")
+    axes = panels(ax, len(shown), height=1.1 + 1.7 * len(shown), sharex=True, sharey=True)
+    for one, (label, samples), colour in zip(cycle(axes), shown.items(), cycle((MEASURED, MODEL, HELDOUT))):
+        scatter_samples(one, x, samples, colour, play)
+        one.set(ylabel=f"{'p' if length == 'half plays' else 'z'} [{length}]", xlim=(x.min(), x.max()))
+        if len(axes) == len(shown):
+            one.set_title(label, loc="left")
+        else:
+            one.plot([], [], ".", color=colour, label=label)
+    if len(axes) < len(shown):
+        legend_above(axes)
     axes[-1].set_xlabel(axis_label(name, unit))
-    return figure
+    return axes
 
 
-@drawn_in_style
+@picture
 def basin_picture(
     p: Any, v: Any, attractor: Any, *, words: Sequence[str], samples: Sequence[Any] = (), length: str = "half plays",
-    play: tuple[float, float] | None = (-1.0, 1.0),
-) -> Figure:  # fmt: skip
+    play: tuple[float, float] | None = (-1.0, 1.0), ax: Where = None,
+) -> list[Axes]:  # fmt: skip
     """Which attractor each start leads to.
 
     Parameters
@@ -168,10 +174,7 @@ def basin_picture(
     words : a name for each attractor
     samples : for each attractor, (2, S) its stroboscopic positions and speeds; drawn as dots
     length, play : unit of the starts, and the edges of the play in it; None: no edges
-
-    Returns
-    -------
-    Figure
+    ax : where to draw
     """
     p, v = column(p), column(v)
     number = np.asarray(attractor).T
@@ -179,13 +182,13 @@ def basin_picture(
     first = 0 if (number < 0).any() or not words else 1
     shown = ["unsettled", *words][first:]
     colours = [GAP, *(BASINS[k % len(BASINS)] for k in range(len(words)))][first:]
-    figure = new_figure(MEDIUM + 1.0)
-    ax = figure.add_subplot()
+    axes = panels(ax, height=MEDIUM + 1.0)
+    ax = axes[0]
     image = ax.imshow(
         number + 1 - first, cmap=ListedColormap(colours), norm=BoundaryNorm(np.arange(-0.5, len(shown)), len(shown)),
         **_imaged((*_sides(p), *_sides(v))),
     )  # fmt: skip
-    bar = figure.colorbar(image, ax=ax, ticks=range(len(shown)))
+    bar = ax.figure.colorbar(image, ax=ax, ticks=range(len(shown)))
     bar.ax.set_yticklabels(shown, fontsize=8.0)
     for k, dots in enumerate(samples):
         dots = np.asarray(dots, dtype=float)
@@ -198,7 +201,7 @@ def basin_picture(
     letter = "p" if length == "half plays" else "z"
     ax.set(xlabel=f"{letter} at the start [{length}]", ylabel=f"{letter}′ at the start", xlim=_sides(p), ylim=_sides(v))
     ax.grid(visible=False)
-    return figure
+    return axes
 
 
 def _sides(values: np.ndarray) -> tuple[float, float]:

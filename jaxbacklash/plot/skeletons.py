@@ -7,15 +7,14 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap, to_rgb
-from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from ..signals import Scalogram
 from ..skeletons import Skeleton, Skeletons
 from ..skeletons.describing_function import axis_crossing, describing_function
+from ..skeletons.fundamental import WaveletFundamental
 from ..skeletons.modal import modal
-from .drawing import drawn_in_style, empty_figure, in_degrees, new_figure, readable_log
-from .style import GAP, HELDOUT, INK, MEASURED, MEDIUM, MODEL, SHORT, TALL, with_unit
+from .drawing import Where, empty, in_degrees, ink, legend_above, panels, picture, readable_log
+from .style import GAP, HELDOUT, MEASURED, MEDIUM, MODEL, SHORT, TALL, with_unit
 from .thinning import envelope
 
 COLOURS = {"hilbert": MODEL, "wavelet": HELDOUT}
@@ -23,47 +22,58 @@ NAMES = {"hilbert": "Hilbert", "wavelet": "wavelet"}
 MARKS = {"hilbert": "o", "wavelet": "x"}
 
 
-@drawn_in_style
-def envelopes(found: Skeletons) -> Figure:
-    """What drives and what answers, with both methods' envelopes, the play's edges and the stretches that do not count."""
+@picture
+def envelopes(found: Skeletons, *, ax: Where = None) -> list[Axes]:
+    """What drives and what answers, with both methods' envelopes, the play's edges and the stretches that do not count.
+
+    Parameters
+    ----------
+    found : from `jaxbacklash.skeleton`
+    ax : where to draw; on one axes, what answers
+    """
     record = found.record
     unit = "m" if found.translational else "rad"
     z = record.channels["z"] if "z" in record.channels else record.channels["y"] - record.channels.get("x", 0.0)
     drive = record.input_name
-    figure = new_figure(TALL if drive else MEDIUM)
-    axes = figure.subplots(2 if drive else 1, 1, sharex=True, squeeze=False)[:, 0]
+    axes = panels(ax, 2 if drive else 1, height=TALL if drive else MEDIUM, sharex=True)
     rows = ([(drive, record.channels[drive], "drive")] if drive else []) + [("z", z, "amplitude")]
-    for ax, (name, values, of) in zip(axes, rows):
+    for one, (name, values, of) in zip(axes, rows[-len(axes) :]):
         times, low, high = envelope(record.t, values)
-        ax.fill_between(times, low, high, color=MEASURED, lw=0.3, alpha=0.45)
+        one.fill_between(times, low, high, color=MEASURED, lw=0.3, alpha=0.45)
         for method in found.methods:
             curve = getattr(method, of)
             if curve is not None and curve.size:
-                ax.plot(method.t, curve, color=COLOURS[method.method], lw=1.2, label=f"{NAMES[method.method]} envelope")
-        ax.set_ylabel(with_unit(name, ("N" if found.translational else "N m") if name == "F" else unit))
+                one.plot(method.t, curve, color=COLOURS[method.method], lw=1.2, label=f"{NAMES[method.method]} envelope")
+        one.set_ylabel(with_unit(name, ("N" if found.translational else "N m") if name == "F" else unit))
         largest = float(np.max(np.abs(values)))
-        ax.set_ylim(-1.15 * largest, 1.15 * largest)
+        one.set_ylim(-1.15 * largest, 1.15 * largest)
     last = axes[-1]
     half = _half_play(found)
     if half is not None:
         centre = _best(found).centre
         for edge in (centre - half, centre + half):
-            last.axhline(edge, color=INK, lw=0.8, ls=(0, (4, 2)))
-        last.plot([], [], color=INK, lw=0.8, ls=(0, (4, 2)), label="edges of the play")
+            last.axhline(edge, color=ink(last), lw=0.8, ls=(0, (4, 2)))
+        last.plot([], [], color=ink(last), lw=0.8, ls=(0, (4, 2)), label="edges of the play")
     _shade_masked(last, _best(found))
     last.set_xlabel("time [s]")
     last.set_xlim(record.t[0], record.t[-1])
-    figure.legend(*_once(axes), loc="outside upper right", ncols=4)
-    return figure
+    legend_above(axes, *_once(axes), columns=4)
+    return axes
 
 
-@drawn_in_style
-def instantaneous_frequency(found: Skeletons) -> Figure:
-    """Frequency of what sets the pace, and the undamped natural frequency that the joint shows at each moment."""
+@picture
+def instantaneous_frequency(found: Skeletons, *, ax: Where = None) -> list[Axes]:
+    """Frequency of what sets the pace, and the undamped natural frequency that the joint shows at each moment.
+
+    Parameters
+    ----------
+    found : from `jaxbacklash.skeleton`
+    ax : where to draw
+    """
     if not any(method.t.size for method in found.methods):
-        return empty_figure("No oscillation was found.")
-    figure = new_figure(SHORT)
-    ax = figure.subplots()
+        return empty(ax, "No oscillation was found.")
+    axes = panels(ax, height=SHORT)
+    ax = axes[0]
     for method in found.methods:
         if not method.t.size:
             continue
@@ -79,82 +89,107 @@ def instantaneous_frequency(found: Skeletons) -> Figure:
     whole = [m.frequency[m.along.whole] for m in found.methods if m.along is not None and m.along.whole.any()]
     highest = [float(np.quantile(frequency, 0.98)) for frequency in whole]
     ax.set_ylim(0.0, 1.25 * max(highest, default=1.0))
-    figure.legend(*_once([ax]), loc="outside upper right", ncols=4)
-    return figure
+    legend_above(axes, *_once(axes), columns=4)
+    return axes
 
 
-@drawn_in_style
-def ridge_over_scalogram(picture: Scalogram, path: Any, *, whole: tuple[float, float], name: str) -> Figure:
+@picture
+def ridge(found: Skeletons, *, ax: Where = None) -> list[Axes]:
     """The size of the wavelet transform over time and frequency, its ridge, and the cone of influence.
 
     Parameters
     ----------
-    picture : (F, M) transform
-    path : frequency of the ridge at the picture's times [Hz], (M,)
-    whole : first and last time at which atoms along the ridge are whole [s]
-    name : channel
+    found : from `jaxbacklash.skeleton`
+    ax : where to draw
     """
-    figure = new_figure(MEDIUM)
-    ax = figure.subplots()
-    size = np.abs(picture.values)
+    along = found.wavelet.along
+    if not isinstance(along, WaveletFundamental):
+        return empty(ax, "No ridge was followed.")
+    shown, kept = along.picture, along.t[along.whole] if np.any(along.whole) else along.t
+    axes = panels(ax, height=MEDIUM)
+    ax = axes[0]
+    size = np.abs(shown.values)
     level = np.clip(1.0 + np.log10(size / size.max() + 1e-12) / 2.5, 0.0, 1.0)  # 50 dB
     shades = np.column_stack([np.tile(to_rgb(MEASURED), (256, 1)), np.linspace(0.0, 1.0, 256)])
     ax.pcolormesh(
-        picture.t, picture.frequencies, level, cmap=ListedColormap(shades), vmin=0.0, vmax=1.0, shading="nearest", rasterized=True
+        shown.t, shown.frequencies, level, cmap=ListedColormap(shades), vmin=0.0, vmax=1.0, shading="nearest", rasterized=True
     )
-    readable_log(ax, "y", float(picture.frequencies[0]), float(picture.frequencies[-1]))
-    ax.plot(picture.t, path, color=MODEL, lw=1.2, label="ridge")
-    for a, b in ((picture.t[0], whole[0]), (whole[1], picture.t[-1])):
+    readable_log(ax, "y", float(shown.frequencies[0]), float(shown.frequencies[-1]))
+    ax.plot(shown.t, along.path, color=MODEL, lw=1.2, label="ridge")
+    for a, b in ((shown.t[0], float(kept[0])), (float(kept[-1]), shown.t[-1])):
         ax.axvspan(a, b, color=GAP, alpha=0.25, lw=0)
     ax.grid(False)
-    ax.set(xlabel="time [s]", ylabel="frequency [Hz]", xlim=(picture.t[0], picture.t[-1]))
-    ax.set_title(f"wavelet transform of {name}, 50 dB from clear to full")
+    ax.set(xlabel="time [s]", ylabel="frequency [Hz]", xlim=(shown.t[0], shown.t[-1]))
+    name = found.record.input_name or found.record.observed_name
+    ax.set_title(f"wavelet transform of {name}, 50 dB from clear to full", loc="left")
     marks, labels = ax.get_legend_handles_labels()
     marks.append(Patch(color=GAP, alpha=0.3, lw=0))
     ax.legend(marks, [*labels, "atoms reach beyond the record or sweep too fast"], loc="upper left")
-    return figure
+    return axes
 
 
-@drawn_in_style
-def backbone_and_damping(found: Skeletons) -> Figure:
-    """Undamped natural frequency and modal damping over amplitude; bars are two standard errors of a bin's mean."""
+@picture
+def backbone(found: Skeletons, *, ax: Where = None) -> list[Axes]:
+    """Undamped natural frequency and modal damping over amplitude; bars are two standard errors of a bin's mean.
+
+    Parameters
+    ----------
+    found : from `jaxbacklash.skeleton`
+    ax : where to draw; on one axes, the natural frequency
+    """
     if not any(np.any(method.kept) for method in found.methods):
-        return empty_figure("No part of the record counts.")
+        return empty(ax, "No part of the record counts.")
     unit = "m" if found.translational else "rad"
-    figure = new_figure(MEDIUM)
-    left, right = figure.subplots(1, 2)
+    axes = panels(ax, 1, 2, height=MEDIUM)
+    left = axes[0]
     for method in found.methods:
         _over_amplitude(left, method, np.sqrt(np.maximum(method.stiffness, 0.0)) / (2.0 * np.pi), "stiffness", _natural)
-        _over_amplitude(right, method, method.damping, "damping", lambda v: v)
-    best = _best(found)
-    half, c = _half_play(found), best.parameters["damping"].value
+    best, half = _best(found), _half_play(found)
     if half is not None:
         k = best.parameters["stiffness"].value
         grid = np.linspace(half, float(np.max(best.amplitude[best.kept])), 400)
         if k is not None:
             mass = found.inertia or _value(best, "inertia") or 1.0
-            left.plot(grid, np.sqrt(k / mass * describing_function(grid, half)) / (2.0 * np.pi), color=INK, lw=0.9,
+            left.plot(grid, np.sqrt(k / mass * describing_function(grid, half)) / (2.0 * np.pi), color=ink(left), lw=0.9,
                       ls=(0, (5, 2)), label="fitted joint under a pure sine")  # fmt: skip
         left.axvline(half, color=GAP, lw=1.0, label="half play")
+    left.set(xlabel=with_unit("amplitude of z", unit), ylabel="ω₀/2π [Hz]", xlim=(0.0, None), ylim=(0.0, None))
+    if len(axes) > 1:
+        left.set_title("backbone", loc="left")
+        _damping(axes[1], found, unit)
+    legend_above(axes[-1:], *_once(axes), columns=4)
+    return axes
+
+
+def _damping(ax: Axes, found: Skeletons, unit: str) -> None:
+    """The damping curve beside the fitted joint's."""
+    for method in found.methods:
+        _over_amplitude(ax, method, method.damping, "damping", lambda v: v)
+    best = _best(found)
+    c = best.parameters["damping"].value
     if c is not None:
         mass = found.inertia or _value(best, "inertia") or 1.0
-        right.axhline(c / (2.0 * mass), color=INK, lw=0.9, ls=(0, (5, 2)), label="fitted joint")
-        right.set_ylim(0.0, max(2.5 * c / (2.0 * mass), 1.2 * float(np.max(best.curve("damping").mean, initial=0.0))))
-    left.set(xlabel=with_unit("amplitude of z", unit), ylabel="ω₀/2π [Hz]", title="backbone", xlim=(0.0, None), ylim=(0.0, None))
-    right.set(xlabel=with_unit("amplitude of z", unit), ylabel="h₀ [1/s]", title="damping curve", xlim=(0.0, None))
-    figure.legend(*_once([left, right]), loc="outside upper right", ncols=4)
-    return figure
+        ax.axhline(c / (2.0 * mass), color=ink(ax), lw=0.9, ls=(0, (5, 2)), label="fitted joint")
+        ax.set_ylim(0.0, max(2.5 * c / (2.0 * mass), 1.2 * float(np.max(best.curve("damping").mean, initial=0.0))))
+    ax.set(xlabel=with_unit("amplitude of z", unit), ylabel="h₀ [1/s]", xlim=(0.0, None))
+    ax.set_title("damping curve", loc="left")
 
 
-@drawn_in_style
-def skeleton_force(found: Skeletons) -> Figure:
-    """Restoring force (3.7) over amplitude, what the inverted describing function makes of it, and the straight line's trap."""
+@picture
+def skeleton(found: Skeletons, *, ax: Where = None) -> list[Axes]:
+    """Restoring force (3.7) over amplitude, what the inverted describing function makes of it, and the straight line's trap.
+
+    Parameters
+    ----------
+    found : from `jaxbacklash.skeleton`
+    ax : where to draw
+    """
     best = _best(found)
     if not np.any(best.kept):
-        return empty_figure("No part of the record counts.")
+        return empty(ax, "No part of the record counts.")
     unit = "m" if found.translational else "rad"
-    figure = new_figure(MEDIUM)
-    ax = figure.subplots()
+    axes = panels(ax, height=MEDIUM)
+    ax = axes[0]
     for method in found.methods:
         _over_amplitude(ax, method, method.restoring_force, "restoring_force", lambda v: v)
     half = _half_play(found)
@@ -166,18 +201,18 @@ def skeleton_force(found: Skeletons) -> Figure:
         grid = np.linspace(0.0, 1.04 * float(np.max(best.amplitude[best.kept])), 400)
         if k is not None:
             sine = k / mass * grid * describing_function(grid, half)
-            ax.plot(grid, sine, color=INK, lw=0.9, ls=(0, (5, 2)), label="of a pure sine")
+            ax.plot(grid, sine, color=ink(ax), lw=0.9, ls=(0, (5, 2)), label="of a pure sine")
         upper = best.kept & (best.amplitude > np.median(best.amplitude[best.kept]))  # where the curve looks straight
         slope, crossing = axis_crossing(best.amplitude[upper], best.restoring_force[upper])
         ax.plot(grid, np.maximum(slope * (grid - crossing), 0.0), color=GAP, lw=1.0, ls=":",
                 label=f"straight line: cuts at {crossing / half:.2f} half plays")  # fmt: skip
         ax.axvline(half, color=GAP, lw=1.0)
         ax.axvspan(0.0, half, color=GAP, alpha=0.16, lw=0, label="inside the play")
-    ax.axhline(0.0, color=INK, lw=0.5)
+    ax.axhline(0.0, color=ink(ax), lw=0.5)
     ax.set(xlabel=with_unit("amplitude of z", unit), ylabel=with_unit("f_s = A ω₀²", f"{unit}/s^2"), xlim=(0.0, None))
     in_degrees(ax, "top", unit)
     ax.legend(loc="upper left")
-    return figure
+    return axes
 
 
 def _modelled_force(found: Skeletons, method: Skeleton, half: float) -> np.ndarray:

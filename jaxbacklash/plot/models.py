@@ -1,4 +1,4 @@
-"""Figures of models: the error falling stage by stage, what each absent effect would bring, where the misfit lies."""
+"""Figures of models: the error falling stage by stage, and what each absent effect would bring."""
 
 from __future__ import annotations
 
@@ -7,30 +7,26 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from .drawing import column, drawn_in_style, empty_figure, new_figure, readable_log
-from .style import GAP, HELDOUT, INK, MEASURED, MODEL, SHORT, format_evidence, is_number, short
+from .drawing import Where, empty, ink, legend_above, panels, picture, readable_log
+from .style import GAP, HELDOUT, MEASURED, MODEL, SHORT, format_evidence, is_number, short
 
 MOST_BARS = 12
 
 
-@drawn_in_style
-def error_by_stage(stages: Sequence[Mapping[str, Any]]) -> Figure:
+@picture
+def error_by_stage(stages: Sequence[Mapping[str, Any]], *, ax: Where = None) -> list[Axes]:
     """Prediction error over noise, model by model, on the record and on the held-out one.
 
     Parameters
     ----------
     stages : entries of ``stages`` in result.json; ``rms_over_noise`` and ``heldout_rms_over_noise`` may be null
-
-    Returns
-    -------
-    Figure
+    ax : where to draw
     """
     if not stages:
-        return empty_figure("No stages to draw.")
-    figure = new_figure(SHORT + 0.3)
-    ax = figure.subplots()
+        return empty(ax, "No stages to draw.")
+    axes = panels(ax, height=SHORT + 0.3)
+    ax = axes[0]
     at = np.arange(len(stages), dtype=float)
     shown = [("rms_over_noise", "this record", MEASURED), ("heldout_rms_over_noise", "held-out record", HELDOUT)]
     shown = [entry for entry in shown if any(is_number(stage.get(entry[0])) for stage in stages)]
@@ -46,7 +42,7 @@ def error_by_stage(stages: Sequence[Mapping[str, Any]]) -> Figure:
             if np.isfinite(value):
                 ax.annotate(short(value), (x, max(value, 1.0)), xytext=(0, 2), textcoords="offset points",
                             ha="center", va="bottom")  # fmt: skip
-    ax.axhline(1.0, color=INK, lw=0.9, label="1: noise alone")
+    ax.axhline(1.0, color=ink(ax), lw=0.9, label="1: noise alone")
     readable_log(ax, "y", min(0.85, 0.95 * min(reach)), max(1.6, max(reach) ** 1.12 * 1.1))
     middle, half = 0.5 * (len(stages) - 1), 0.5 * max(len(stages), 3)
     ax.set(xlim=(middle - half, middle + half), ylabel="rms over noise")
@@ -54,8 +50,8 @@ def error_by_stage(stages: Sequence[Mapping[str, Any]]) -> Figure:
     ax.tick_params(axis="x", length=0)
     ax.spines["bottom"].set_visible(False)
     ax.grid(False, axis="x")
-    ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, borderaxespad=0.2)
-    return figure
+    legend_above(axes)
+    return axes
 
 
 def error_with(candidate: Mapping[str, Any]) -> Any:
@@ -64,8 +60,10 @@ def error_with(candidate: Mapping[str, Any]) -> Any:
     return known if is_number(known) else candidate.get("predicted_rms_over_noise")
 
 
-@drawn_in_style
-def candidate_ranking(candidates: Sequence[Mapping[str, Any]], *, current: float | None = None) -> Figure:
+@picture
+def candidate_ranking(
+    candidates: Sequence[Mapping[str, Any]], *, current: float | None = None, most: int = MOST_BARS, ax: Where = None
+) -> list[Axes]:
     """What the error would become with each absent effect added, best first.
 
     Parameters
@@ -73,16 +71,14 @@ def candidate_ranking(candidates: Sequence[Mapping[str, Any]], *, current: float
     candidates : entries of ``candidates`` in result.json: ``name``, ``predicted_rms_over_noise``,
         ``refitted_rms_over_noise``, which is drawn where it is known, ``evidence``
     current : rms over noise of the model as it is, drawn as a line
-
-    Returns
-    -------
-    Figure
+    most : how many are drawn
+    ax : where to draw
     """
-    kept = list(candidates)[:MOST_BARS]
+    kept = list(candidates)[:most]
     if not kept:
-        return empty_figure("No effect was left to try.")
-    figure = new_figure(0.9 + 0.27 * len(kept))
-    ax = figure.subplots()
+        return empty(ax, "No effect was left to try.")
+    axes = panels(ax, height=0.9 + 0.27 * len(kept))
+    ax = axes[0]
     at = np.arange(len(kept))
     values = [error_with(entry) for entry in kept]
     known = [float(value) for value in values if is_number(value) and value > 0]
@@ -108,8 +104,8 @@ def candidate_ranking(candidates: Sequence[Mapping[str, Any]], *, current: float
         readable_log(ax, "x", lowest, highest * 1.05)
     else:
         ax.set_xlim(0.0, highest * 1.03)
-    ax.axvline(1.0, color=INK, lw=0.8, ls="--")
-    _above(ax, 1.0, "noise", INK)
+    ax.axvline(1.0, color=ink(ax), lw=0.8, ls="--")
+    _above(ax, 1.0, "noise", ink(ax))
     if is_number(current):
         assert current is not None
         ax.axvline(current, color=MEASURED, lw=1.2)
@@ -117,44 +113,7 @@ def candidate_ranking(candidates: Sequence[Mapping[str, Any]], *, current: float
             _above(ax, current, "now", MEASURED)
     ax.grid(False, axis="y")
     ax.tick_params(axis="y", length=0)
-    return figure
-
-
-@drawn_in_style
-def misfit_profile(bins: Any, values: Any, counts: Any, *, xlabel: str) -> Figure:
-    """Misfit in units of the noise against whatever it may depend on, and how many samples each bin rests on.
-
-    Parameters
-    ----------
-    bins : (K + 1,) edges, or (K,) centres, of the coordinate
-    values : (K,) root mean square of the residual over noise in each bin [1]; NaN where nothing falls
-    counts : (K,) samples in each bin
-    xlabel : the coordinate with its unit, ``"z′ [rad/s]"``
-
-    Returns
-    -------
-    Figure
-    """
-    bins, values, counts = column(bins), column(values), column(counts)
-    if not values.size or not np.any(np.isfinite(values)):
-        return empty_figure("No misfit to draw.")
-    if bins.size == values.size:
-        bins = _edges(bins)
-    figure = new_figure(SHORT)
-    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
-    upper.stairs(values, bins, baseline=None, color=MODEL, lw=1.4)
-    upper.axhline(1.0, color=INK, lw=0.8, ls="--", label="1: noise alone")
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
-    if high > 10.0 * max(low, 1.0):
-        readable_log(upper, "y", min(0.8, max(low, 0.05) * 0.8), high * 1.4)
-    else:
-        upper.set_ylim(0.0, 1.25 * max(high, 1.5))
-    upper.legend(loc="best")
-    upper.set_ylabel("rms over noise")
-    if counts.size == values.size:
-        lower.stairs(counts, bins, fill=True, color=GAP, alpha=0.6, lw=0)
-    lower.set(xlabel=xlabel, ylabel="samples", xlim=(bins[0], bins[-1]))
-    return figure
+    return axes
 
 
 def stage_name(stage: Mapping[str, Any], number: int) -> str:
@@ -177,10 +136,3 @@ def _column(ax: Axes, offset: float, title: str, texts: list[str]) -> None:
 def _above(ax: Axes, at: float, text: str, colour: str) -> None:
     ax.annotate(text, (at, 1.0), xycoords=("data", "axes fraction"), xytext=(0, 3), textcoords="offset points",
                 ha="center", va="bottom", fontsize=8.0, color=colour)  # fmt: skip
-
-
-def _edges(centres: np.ndarray) -> np.ndarray:
-    if centres.size == 1:
-        return np.array([centres[0] - 0.5, centres[0] + 0.5])
-    middle = 0.5 * (centres[1:] + centres[:-1])
-    return np.concatenate([[2 * centres[0] - middle[0]], middle, [2 * centres[-1] - middle[-1]]])

@@ -1,0 +1,267 @@
+"""Pictures of fits and comparisons: the record beside its model, what is left, and the joint itself."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..criticism import Ranking, Refinement
+from ..errors import BadInput
+from ..fitting import Comparison, Fit, Score
+from ..fitting.loop import NOTHING, sliding_level
+from ..parameters import channel_unit, unit_text
+from ..records import MeasuredSeries, Record
+from ..system import System
+from .drawing import Drawn, Where
+from .joints import force_loop as loop_of_force
+from .joints import phase_plane as plane_of_phases
+from .joints import restoring_force as force_over_motion
+from .models import candidate_ranking, error_by_stage
+from .motion import INSIDE, Motion, joint_law
+from .times import channels_in_time, measured_against_model, residual_in_time, stretch_of_model
+
+
+class Beside(NamedTuple):
+    """A model beside one record, whoever has set it there."""
+
+    system: System
+    record: Record
+    score: Score
+    noise: float
+    translational: bool
+    per_inertia: bool
+
+    @property
+    def length(self) -> str:
+        """Unit of the motion."""
+        return "m" if self.translational else "rad"
+
+    @property
+    def edges(self) -> tuple[float, ...] | None:
+        """Edges of the play, None where there is none."""
+        return tuple(float(edge) for edge in self.system.edges(0.0)) if self.system.has_play else None
+
+
+def beside(found: Fit | Comparison, number: int = 0) -> Beside:
+    """A fit's model beside one of its records, or a comparison's."""
+    if isinstance(found, Comparison):
+        return Beside(found.system, found.record, found.score, found.noise, found.translational, False)
+    if not isinstance(found, Fit):
+        raise BadInput(f"found a {type(found).__name__}, wanted a fit or a comparison")
+    if not 0 <= number < len(found.records):
+        raise BadInput(f"record {number}: the fit has {len(found.records)}, counted from 0")
+    return Beside(
+        found.system, found.records[number], found.scores[number], found.noise[number], found.translational, found.per_inertia
+    )
+
+
+def fit(
+    found: Fit | Comparison, *, record: int = 0, between: tuple[float, float] | None = None, ax: Where = None
+) -> Drawn:
+    """The record with its model: all of it, and below the stretch that the model misses most and a typical one.
+
+    Each window is predicted from its own start. On one axes the whole record is drawn, or the stretch that is asked for.
+
+    Parameters
+    ----------
+    found : a fit or a comparison
+    record : which of a fit's records
+    between : draw this stretch alone, from one time to another [s], sample by sample
+    ax : axes, as many as there are panels (5, or 2 of a stretch) or one; a figure or part of one; None: a new figure
+
+    Returns
+    -------
+    the axes, or an array of them
+
+    Raises
+    ------
+    BadInput
+        No such record, or other axes than asked for.
+    """
+    one = beside(found, record)
+    name, score = one.record.observed_name, one.score
+    what: dict[str, Any] = {
+        "window_starts": score.window_times, "label": name, "noise": one.noise,
+        "unit": channel_unit(name, translational=one.translational),
+    }  # fmt: skip
+    if between is not None:
+        return stretch_of_model(score.t, score.measured, score.predicted, between=between, ax=ax, **what)
+    return measured_against_model(score.t, score.measured, score.predicted, ax=ax, **what)
+
+
+def residuals(found: Fit | Comparison, *, record: int = 0, ax: Where = None) -> Drawn:
+    """What the model leaves, over the noise: every sample, and below each window's root mean square.
+
+    Parameters
+    ----------
+    found : a fit or a comparison
+    record : which of a fit's records
+    ax : two axes, or one for every sample; a figure or part of one; None: a new figure
+
+    Returns
+    -------
+    the axes, or an array of them
+    """
+    score = beside(found, record).score
+    return residual_in_time(score.t, score.residual, window_edges=score.window_times, window_rms=score.window_rms, ax=ax)
+
+
+def record(measured: Record | MeasuredSeries, *, ax: Where = None) -> Drawn:
+    """What was measured, one panel a channel.
+
+    Parameters
+    ----------
+    measured : a record, or a series
+    ax : as many axes as there are channels, or one for the first of them; a figure or part of one; None: a new figure
+
+    Returns
+    -------
+    the axes, or an array of them
+    """
+    if isinstance(measured, MeasuredSeries):
+        return channels_in_time(measured.t, {measured.name: (measured.values, measured.unit)}, ax=ax)
+    return channels_in_time(measured.t, {name: (v, channel_unit(name)) for name, v in measured.channels.items()}, ax=ax)
+
+
+def phase_plane(found: Fit | Comparison | Record, *, record: int = 0, ax: Where = None) -> Drawn:
+    """How often the joint passes each relative position and speed, as measured, with the play of the model.
+
+    Parameters
+    ----------
+    found : a fit or a comparison, or a record, of which no play is known
+    record : which of a fit's records
+    ax : one axes; a figure or part of one; None: a new figure
+
+    Returns
+    -------
+    the axes
+
+    Raises
+    ------
+    BadInput
+        The record holds the transmitted force, and no motion of the link.
+    """
+    one = None if isinstance(found, Record) else beside(found, record)
+    motion = _motion(found if isinstance(found, Record) else one.record)  # type: ignore[union-attr]
+    edges, unit = (None, "rad") if one is None else (one.edges, one.length)
+    return plane_of_phases(motion.z[INSIDE], motion.dz[INSIDE], edges=edges, unit=unit, ax=ax)
+
+
+def restoring_force(found: Fit | Comparison, *, record: int = 0, ax: Where = None) -> Drawn:
+    """The joint's torque over its relative motion: points from the measured motion, a line the model's law.
+
+    Points are what the joint returns when inertia, damping and loads are taken off the smoothed motion.
+
+    Parameters
+    ----------
+    found : a fit or a comparison
+    record : which of a fit's records
+    ax : one axes; a figure or part of one; None: a new figure
+
+    Returns
+    -------
+    the axes
+
+    Raises
+    ------
+    BadInput
+        The model has no spring, or the record no motion of the link.
+    """
+    one = beside(found, record)
+    if one.system.contact is None:
+        raise BadInput("the model has no spring, so it returns no torque that could be drawn")
+    motion = _motion(one.record)
+    at = np.linspace(motion.z.min(), motion.z.max(), 801)
+    return force_over_motion(
+        motion.z[INSIDE], motion.restoring_torque(one.system)[INSIDE], model_z=at, model_torque=joint_law(one.system, at),
+        edges=one.edges, unit=unit_text("N m", translational=one.translational, per_inertia=one.per_inertia),
+        length_unit=one.length, ax=ax,
+    )  # fmt: skip
+
+
+def force_loop(found: Fit | Comparison, *, record: int = 0, ax: Where = None) -> Drawn:
+    """Transmitted force over the base motion, measured and as the model predicts it.
+
+    Parameters
+    ----------
+    found : a fit or a comparison of a record that holds x and T
+    record : which of a fit's records
+    ax : two axes, or one for both loops; a figure or part of one; None: a new figure
+
+    Returns
+    -------
+    the axes, or an array of them
+
+    Raises
+    ------
+    BadInput
+        The record holds no transmitted force.
+    """
+    one = beside(found, record)
+    if "T" not in one.record.channels:
+        raise BadInput(f"{one.record.path or 'the record'}: holds no transmitted force T, wanted a record of x and T")
+    force = one.record.channels["T"]
+    return loop_of_force(
+        one.record.channels["x"], force, one.score.predicted, level=NOTHING * sliding_level(force),
+        unit=channel_unit("T", translational=one.translational), length_unit=one.length, ax=ax,
+    )  # fmt: skip
+
+
+def stages(found: Refinement | Fit | Sequence[Fit], *, ax: Where = None) -> Drawn:
+    """Prediction error over noise, model by model, on the record and on the held-out one.
+
+    Parameters
+    ----------
+    found : a refinement, or fits of one record in order
+    ax : one axes; a figure or part of one; None: a new figure
+
+    Returns
+    -------
+    the axes
+    """
+    if isinstance(found, Refinement):
+        return error_by_stage([_stage(stage.fit, stage.added, stage.dropped) for stage in found.stages], ax=ax)
+    fits = [found] if isinstance(found, Fit) else list(found)
+    before: list[set[str]] = [set(one.system.effects) for one in (*fits[:1], *fits)]
+    return error_by_stage(
+        [_stage(one, " + ".join(sorted(set(one.system.effects) - old)) or None, sorted(old - set(one.system.effects)))
+         for one, old in zip(fits, before)], ax=ax,
+    )  # fmt: skip
+
+
+def ranking(found: Ranking, *, most: int = 12, ax: Where = None) -> Drawn:
+    """What the error would become with each absent effect added, best first, with the evidence for it.
+
+    Evidence allows for the parameters that an effect brings: below 0 it speaks against it.
+
+    Parameters
+    ----------
+    found : from `jaxbacklash.rank_effects`
+    most : how many are drawn
+    ax : one axes; a figure or part of one; None: a new figure
+
+    Returns
+    -------
+    the axes
+    """
+    entries = [
+        {
+            "name": one.name, "evidence": one.evidence, "predicted_rms_over_noise": one.predicted_rms_over_noise,
+            "refitted_rms_over_noise": one.refitted_rms_over_noise, "why": one.why,
+        }
+        for one in found
+    ]  # fmt: skip
+    return candidate_ranking(entries, current=found.current, most=most, ax=ax)
+
+
+def _stage(fit: Fit, added: str | None, dropped: Sequence[str]) -> dict[str, Any]:
+    held = None if fit.heldout is None else fit.heldout.rms
+    return {"added": added, "dropped": list(dropped), "rms_over_noise": fit.score.rms, "heldout_rms_over_noise": held}
+
+
+def _motion(record: Record) -> Motion:
+    if record.observed_name == "T":
+        raise BadInput(f"{record.path or 'the record'}: holds the transmitted force and no motion of the link; draw force_loop")
+    return Motion(record, record.observed_name)
