@@ -18,16 +18,12 @@
 # tool once, to see what happens to somebody who is wrong.
 
 # %%
-from importlib.resources import files
+from pathlib import Path
+from runpy import run_path
 
-from IPython.display import HTML
+import matplotlib.pyplot as plt
 
 import jaxbacklash as jb
-from jaxbacklash.commands.common import load_laws
-from jaxbacklash.report import figures
-from jaxbacklash.report.diagnose_report import failure_panels
-from jaxbacklash.report.refine_result import candidates_json, refinement_json
-from jaxbacklash.report.result import stage
 
 jb.start()
 
@@ -35,9 +31,7 @@ jb.start()
 # Two records of the same joint: one to fit, one to judge by. The inertia of the link is known, 3.16 kg m^2.
 
 # %%
-data = files("jaxbacklash") / "data"
-record = jb.read_record(data / "demo_train.csv")
-heldout = jb.read_record(data / "demo_heldout.csv")
+record, heldout = jb.demo_records()
 print(record.summary())
 
 # %% [markdown]
@@ -65,8 +59,8 @@ print(found)
 # The same as pictures. Misfit and missing torque against what tells most about them:
 
 # %%
-panels = failure_panels(found)
-HTML(panels[0].figure_svg)
+jb.plot.where_it_fails(found)
+plt.show()
 
 # %% [markdown]
 # ## 3. The missing torque
@@ -75,14 +69,16 @@ HTML(panels[0].figure_svg)
 # prediction windows, not by differentiating the record twice.
 
 # %%
-HTML(panels[1].figure_svg)
+jb.plot.missing_torque(found)
+plt.show()
 
 # %% [markdown]
 # Against the coordinate that explains it best it is nearly a straight line through the origin: it falls with the absolute
 # angle of the link, which the joint itself does not know. So it acts between the link and the ground.
 
 # %%
-HTML(panels[2].figure_svg)
+jb.plot.torque_over(found)
+plt.show()
 
 # %% [markdown]
 # ## 4. Which effect is it?
@@ -97,7 +93,8 @@ ranking = jb.rank_effects(base)
 print(ranking)
 
 # %%
-HTML(figures.to_svg(figures.candidate_ranking(candidates_json(ranking), current=ranking.current)))
+jb.plot.ranking(ranking)
+plt.show()
 
 # %% [markdown]
 # Gravity and a torque ripple are far ahead of all others. Over the few degrees that this link moves, a ripple of four
@@ -129,7 +126,8 @@ print(other)
 # differs from zero proves nothing; the error does.
 
 # %%
-HTML(figures.to_svg(figures.error_by_stage([stage(base), stage(other, added="gap_spring"), stage(full, added="gravity")])))
+jb.plot.stages([base, other, full])
+plt.show()
 
 # %% [markdown]
 # ## 7. All of it at once
@@ -146,20 +144,20 @@ print(refined)
 # of a milliradian, and wrong by nearly a hundred times that. The same as a program reads it:
 
 # %%
-print(refinement_json(refined)["stages"][1]["moved"]["backlash"])
+print(refined.moved[1]["backlash"])
 
 # %% [markdown]
 # ## 8. An effect of your own
 #
 # Nobody's catalogue is complete. Here is a file with one class: a cable that pulls the link back to its middle. Nothing
-# has to be registered; on the command line it is `--laws own_effect.py`.
+# has to be registered, running the file is enough; on the command line it is `--laws own_effect.py`.
 
 # %%
-own = data / "own_effect.py"
+own = Path(record.path).with_name("own_effect.py")
 print(own.read_text())
 
 # %%
-load_laws(own)
+laws = run_path(own)
 print(jb.rank_effects(base))
 
 # %% [markdown]

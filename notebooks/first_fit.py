@@ -18,17 +18,9 @@
 # encoders watch. Somebody forgot to mention a load on the link.
 
 # %%
-from importlib.resources import files
-
 import matplotlib.pyplot as plt
-import numpy as np
-from IPython.display import HTML
 
 import jaxbacklash as jb
-from jaxbacklash.fitting import compare
-from jaxbacklash.report import figures
-from jaxbacklash.report.fit_report import Motion
-from jaxbacklash.report.result import stage
 
 # %% [markdown]
 # The fits need double precision, and compiled code is worth keeping for the next time. Importing the package changes
@@ -44,18 +36,12 @@ jb.start()
 # A second record of the same joint, shaken in another way, is kept aside for the end.
 
 # %%
-data = files("jaxbacklash") / "data"
-record = jb.read_record(data / "demo_train.csv")
-heldout = jb.read_record(data / "demo_heldout.csv")
+record, heldout = jb.demo_records()
 print(record.summary())
 print(heldout.summary())
 
 # %%
-figure, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(9, 4), layout="constrained")
-above.plot(record.t, np.degrees(record.channels["x"]), lw=0.8)
-below.plot(record.t, np.degrees(record.channels["z"]), lw=0.8)
-above.set(ylabel="base x [deg]")
-below.set(ylabel="link - base z [deg]", xlabel="time [s]")
+jb.plot.record(record)
 plt.show()
 
 # %% [markdown]
@@ -63,8 +49,8 @@ plt.show()
 # middle the link coasts from one contact to the other at almost constant speed: that is the play.
 
 # %%
-motion = Motion(record, "z")
-HTML(figures.to_svg(figures.phase_plane(motion.z, motion.dz, edges=None)))
+jb.plot.phase_plane(record)
+plt.show()
 
 # %% [markdown]
 # ## The base model
@@ -90,20 +76,8 @@ print(base)
 # By eye, nothing seems wrong. Dots are measured, lines are the model, stretch A is the worst of the record.
 
 # %%
-score = base.score
-HTML(
-    figures.to_svg(
-        figures.measured_against_model(
-            score.t,
-            score.measured,
-            score.predicted,
-            window_starts=score.window_times,
-            label="z",
-            unit="rad",
-            noise=base.noise[0],
-        )
-    )
-)
+jb.plot.fit(base)
+plt.show()
 
 # %% [markdown]
 # ## Where it fails
@@ -113,13 +87,8 @@ HTML(
 # link itself is, and the link hangs. The picture does not prove it. The next fit does.
 
 # %%
-HTML(
-    figures.to_svg(
-        figures.residual_in_time(
-            score.t, score.residual, window_edges=score.window_times, window_rms=score.window_rms
-        )
-    )
-)
+jb.plot.residuals(base)
+plt.show()
 
 # %% [markdown]
 # ## Adding what is missing
@@ -145,16 +114,17 @@ print(full)
 # they are; only the state at the start of each window is estimated.
 
 # %%
-HTML(figures.to_svg(figures.error_by_stage([stage(base), stage(full, added="gravity")])))
+jb.plot.stages([base, full])
+plt.show()
 
 # %% [markdown]
 # The same in words, for any model and any record:
 
 # %%
-print(compare(base.system, heldout))
+print(jb.compare(base.system, heldout))
 
 # %%
-print(compare(full.system, heldout))
+print(jb.compare(full.system, heldout))
 
 # %% [markdown]
 # ## What to keep
@@ -172,13 +142,13 @@ print(jb.dump_model(full.system))
 
 # %%
 try:
-    jb.read_record(data / "demo_train.csv", columns={"z": "encoder_2"})
+    jb.read_record(record.path, columns={"z": "encoder_2"})
 except jb.BadInput as error:
     print(error)
 
 # %%
 try:
-    jb.read_record(data / "demo_train.csv", scales={"x": 57.3, "z": 57.3})
+    jb.read_record(record.path, scales={"x": 57.3, "z": 57.3})
 except jb.BadInput as error:
     print(error)
 

@@ -24,11 +24,8 @@ from tempfile import mkdtemp
 
 import matplotlib.pyplot as plt
 import numpy as np
-from IPython.display import HTML
-from jaxbacklash.report.drawing import to_svg
 
 import jaxbacklash as jb
-from jaxbacklash.report import figures_chaos
 
 jb.start()
 TINY = bool(os.environ.get("JAXBACKLASH_TINY"))  # set by the tests, to be quick
@@ -74,14 +71,16 @@ print(found)
 # degrees of freedom, a cloud for noise.
 
 # %%
-HTML(to_svg(figures_chaos.phase_plot(found, "m")))
+jb.plot.attractor(found, "m")
+plt.show()
 
 # %% [markdown]
 # Then how neighbours part. In chaos the mean logarithm of their distance rises along a straight line until they are as far
 # apart as any two states; in noise it jumps there at once; in regular motion it stays low.
 
 # %%
-HTML(to_svg(figures_chaos.stretching_curves(found)))
+jb.plot.stretching(found)
+plt.show()
 
 # %% [markdown]
 # Then surrogates: series with the same values and the same spectrum, otherwise random. If the series were linear noise, seen
@@ -89,7 +88,8 @@ HTML(to_svg(figures_chaos.stretching_curves(found)))
 # circles for regular motion and wanders for chaos.
 
 # %%
-HTML(to_svg(figures_chaos.surrogates_and_walk(found)))
+jb.plot.surrogates(found)
+plt.show()
 
 # %% [markdown]
 # ## What was chosen
@@ -98,10 +98,12 @@ HTML(to_svg(figures_chaos.surrogates_and_walk(found)))
 # taken off fewer coordinates are enough.
 
 # %%
-HTML(to_svg(figures_chaos.delay_choice(found)))
+jb.plot.delay(found)
+plt.show()
 
 # %%
-HTML(to_svg(figures_chaos.dimension_choice(found)))
+jb.plot.dimension(found)
+plt.show()
 
 # %% [markdown]
 # ## When it is not chaos

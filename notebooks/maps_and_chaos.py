@@ -23,9 +23,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import jaxbacklash as jb
-from jaxbacklash import dynamics
-from jaxbacklash.excitation import Chirp, Harmonic
-from jaxbacklash.report import figures_maps as figures
 
 # %% [markdown]
 # `start` switches to double precision, which everything needs, and tells the compiler what maps and fits gain from.
@@ -41,9 +38,9 @@ tiny = bool(os.environ.get("JAXBACKLASH_TINY"))
 # period of the drive, a periodic motion is a few points. This one is not.
 
 # %%
-case = dynamics.PaperCase(1)
+case = jb.dynamics.PaperCase(1)
 system, force = case.build({})
-points = dynamics.stroboscopic(system, force, points=100 if tiny else 4000)
+points = jb.dynamics.stroboscopic(system, force, points=100 if tiny else 4000)
 
 # %%
 figure, ax = plt.subplots(figsize=(6, 4), layout="constrained")
@@ -58,7 +55,7 @@ plt.show()
 # would still move the number. All exponents together sum to the rate at which volumes shrink, here -2 zeta = -0.04.
 
 # %%
-exponents = dynamics.lyapunov_spectrum(system, force, periods=60 if tiny else 2000, skip=20 if tiny else 100)
+exponents = jb.dynamics.lyapunov_spectrum(system, force, periods=60 if tiny else 2000, skip=20 if tiny else 100)
 print(exponents)
 print("sum", exponents.values.sum())
 
@@ -68,7 +65,7 @@ print("sum", exponents.values.sum())
 
 # %%
 with_friction = system.with_effects(jb.CoulombGround(0.05))
-print(dynamics.lyapunov_spectrum(with_friction, force, count=1, periods=30 if tiny else 400, skip=5 if tiny else 100))
+print(jb.dynamics.lyapunov_spectrum(with_friction, force, count=1, periods=30 if tiny else 400, skip=5 if tiny else 100))
 
 # %% [markdown]
 # ## Figures 2 and 3 of the paper
@@ -78,11 +75,9 @@ print(dynamics.lyapunov_spectrum(with_friction, force, count=1, periods=30 if ti
 # %%
 inverse_alpha = np.linspace(1.0, 5.0, 24 if tiny else 800)
 periods, skip = (50, 10) if tiny else (600, 200)
-line = dynamics.paper_map(1, {"inverse_alpha": inverse_alpha, "zeta": [0.02]}, periods=periods, skip=skip).isel(zeta=0)
-figures.exponent_curve(
-    inverse_alpha, line.lyapunov, line.lyapunov_stderr, name="inverse_alpha", unit="1", exponent_unit="1/tau",
-    samples=line.poincare.values,
-)
+line = jb.dynamics.paper_map(1, {"inverse_alpha": inverse_alpha, "zeta": [0.02]}, periods=periods, skip=skip).isel(zeta=0)
+jb.plot.exponents(line)
+plt.show()
 
 # %% [markdown]
 # ## Swept up, swept down
@@ -91,14 +86,11 @@ figures.exponent_curve(
 
 # %%
 values = np.linspace(3.8, 4.8, 6 if tiny else 120)
-sweeps = dynamics.bifurcation(
+sweeps = jb.dynamics.bifurcation(
     case, "inverse_alpha", values, settle=10 if tiny else 60, samples=20, start_periods=40 if tiny else 300
 )
-figures.bifurcation_diagram(
-    values,
-    {"swept up": sweeps.swept_up, "swept down": sweeps.swept_down, "from eight starts": sweeps.from_starts},
-    name="inverse_alpha", unit="1",
-)
+jb.plot.bifurcation(sweeps)
+plt.show()
 
 # %% [markdown]
 # ## Basins of attraction
@@ -108,11 +100,10 @@ figures.bifurcation_diagram(
 
 # %%
 side = np.linspace(-3.0, 3.0, 12 if tiny else 200)
-found = dynamics.basins(case, {"inverse_alpha": 3.0}, side, side, periods=120 if tiny else 300)
+found = jb.dynamics.basins(case, {"inverse_alpha": 3.0}, side, side, periods=120 if tiny else 300)
 print(*found.attractors, sep="\n")
-figures.basin_picture(
-    side, side, found.number, words=[str(a) for a in found.attractors], samples=[np.stack([a.p, a.v]) for a in found.attractors]
-)
+jb.plot.basins(found)
+plt.show()
 
 # %% [markdown]
 # ## Two parameters at once
@@ -121,20 +112,18 @@ figures.basin_picture(
 
 # %%
 axes = {"inverse_alpha": np.linspace(1.0, 5.0, 8 if tiny else 256), "zeta": np.linspace(0.005, 0.03, 4 if tiny else 64)}
-plane = dynamics.paper_map(1, axes, periods=periods, skip=skip)
-figures.exponent_and_period_map(
-    plane.inverse_alpha, plane.zeta, plane.lyapunov, plane.period, names=list(axes), units=["1", "1"], exponent_unit="1/tau"
-)
+plane = jb.dynamics.paper_map(1, axes, periods=periods, skip=skip)
+jb.plot.map(plane)
+plt.show()
 
 # %% [markdown]
 # Over the frequency of the drive and its force:
 
 # %%
 axes = {"Omega": np.linspace(0.1, 0.6, 8 if tiny else 200), "inverse_alpha": np.linspace(1.0, 5.0, 4 if tiny else 80)}
-plane = dynamics.paper_map(1, axes, periods=periods, skip=skip)
-figures.exponent_and_period_map(
-    plane.Omega, plane.inverse_alpha, plane.lyapunov, plane.period, names=list(axes), units=["1", "1"], exponent_unit="1/tau"
-)
+plane = jb.dynamics.paper_map(1, axes, periods=periods, skip=skip)
+jb.plot.map(plane)
+plt.show()
 
 # %% [markdown]
 # ## Your own joint
@@ -144,18 +133,16 @@ figures.exponent_and_period_map(
 
 # %%
 joint = jb.base_motion_joint(inertia=3.16, backlash=0.026, stiffness=11000.0, damping=20.0)
-shaken = Harmonic(0.05, 2.0 * np.pi * 1.54)
-family = dynamics.NamedParameters(joint, shaken)
+shaken = jb.Harmonic(0.05, 2.0 * np.pi * 1.54)
+family = jb.dynamics.NamedParameters(joint, shaken)
 axes = {
     "drive.amplitude": np.radians(np.linspace(1.0, 6.0, 6 if tiny else 60)),
     "drive.frequency": np.linspace(1.0, 3.0, 4 if tiny else 40),
 }
-own = dynamics.run_map(dynamics.request(family, axes, periods=periods, skip=skip))
+own = jb.dynamics.run_map(jb.dynamics.request(family, axes, periods=periods, skip=skip))
 print(own.lyapunov.dims, own.lyapunov.attrs["units"], own.attrs["solver"])
-figures.exponent_and_period_map(
-    np.degrees(own["drive.amplitude"]), own["drive.frequency"], own.lyapunov, own.period,
-    names=["amplitude of the base", "frequency"], units=["deg", "Hz"], exponent_unit=own.lyapunov.attrs["units"],
-)
+jb.plot.map(own, degrees=True)
+plt.show()
 
 # %% [markdown]
 # ## With everything the catalogue has
@@ -167,31 +154,28 @@ figures.exponent_and_period_map(
 # %%
 real = joint.with_effects(jb.Gravity(28.0), jb.CubicStiffness(3e7), jb.CoulombJoint(1.0))
 values = np.radians(np.linspace(2.0, 5.0, 3 if tiny else 60))
-swept = dynamics.bifurcation(
-    dynamics.NamedParameters(real, shaken), "drive.amplitude", values,
+swept = jb.dynamics.bifurcation(
+    jb.dynamics.NamedParameters(real, shaken), "drive.amplitude", values,
     settle=10 if tiny else 60, samples=20, start_periods=30 if tiny else 200, starts=[(0.0, 0.0), (0.02, 0.0)],
 )
 print(swept.attrs["solver"])
-figures.bifurcation_diagram(
-    np.degrees(values), {"swept up": swept.swept_up, "swept down": swept.swept_down, "from two starts": swept.from_starts},
-    name="amplitude of the base", unit="deg", length="rad", play=(-0.013, 0.013),
-)
+jb.plot.bifurcation(swept, degrees=True, play=(-0.013, 0.013))
+plt.show()
 
 # %% [markdown]
 # ## Along a motion that never repeats
 #
-# A chirp, or a measured base motion (`jaxbacklash.simulation.measured_base(record)`), has no period: give the time between two
+# A chirp, or a measured base motion (`jb.measured_base(record)`), has no period: give the time between two
 # samples instead. The exponent is then that of this one stretch. Where it is positive, no simulation of the whole stretch can be
 # trusted, however good the model, and a fit must look through short windows.
 
 # %%
-chirp = Chirp(amplitude=0.06, f0=0.5, f1=6.0, duration=20.0)
+chirp = jb.Chirp(amplitude=0.06, f0=0.5, f1=6.0, duration=20.0)
 plays = np.linspace(0.01, 0.05, 5 if tiny else 120)
-wanted = dynamics.request(
-    dynamics.NamedParameters(joint, chirp), {"backlash": plays}, period=0.25, periods=40 if tiny else 80, skip=4, samples=16
+wanted = jb.dynamics.request(
+    jb.dynamics.NamedParameters(joint, chirp), {"backlash": plays}, period=0.25, periods=40 if tiny else 80, skip=4, samples=16
 )
-stretch = dynamics.run_map(wanted)
+stretch = jb.dynamics.run_map(wanted)
 print(stretch.attrs["solver"])
-figures.exponent_curve(
-    plays, stretch.lyapunov, stretch.lyapunov_stderr, name="backlash", unit="rad", exponent_unit=stretch.lyapunov.attrs["units"]
-)
+jb.plot.exponents(stretch, samples=False, degrees=True)
+plt.show()

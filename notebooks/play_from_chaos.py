@@ -20,14 +20,10 @@
 # %%
 import os
 
+import matplotlib.pyplot as plt
 import numpy as np
-from IPython.display import HTML
-from jaxbacklash.report.drawing import to_svg
 
 import jaxbacklash as jb
-from jaxbacklash.excitation import Harmonic
-from jaxbacklash.report import figures_signature
-from jaxbacklash.signature import Level, exponent_map, play_from_exponents, worth
 
 jb.start()
 TINY = bool(os.environ.get("JAXBACKLASH_TINY"))  # set by the tests, to be quick
@@ -45,8 +41,9 @@ inertia, frequency, omega_0 = 3.16, 1.54, 2 * np.pi * 11.0
 stiffness, damping = inertia * omega_0**2, 2 * 0.02 * inertia * omega_0
 joint = jb.two_link(inertia, np.radians(1.5), stiffness, damping, -60.0, linearised=True)
 size = {"starts": 2, "periods": 60, "skip": 30} if TINY else {"starts": 4, "periods": 300, "skip": 150}
-curve = exponent_map(joint, frequency, (0.6, 5.0, 60 if TINY else 640), **size)
-HTML(to_svg(figures_signature.exponent_over_drive(curve)))
+curve = jb.signature.exponent_map(joint, frequency, (0.6, 5.0, 60 if TINY else 640), **size)
+jb.plot.exponent_over_drive(curve)
+plt.show()
 
 # %% [markdown]
 # ## Is it worth measuring?
@@ -58,13 +55,14 @@ HTML(to_svg(figures_signature.exponent_over_drive(curve)))
 amplitudes = np.radians([1.34, 2.07, 2.68, 3.41, 3.65, 3.78, 4.87, 5.73])
 possible = (np.radians(1.2), np.radians(2.1))
 experiments = 20 if TINY else 200
-few = worth(curve, amplitudes[[0, 3, 6]], possible, experiments=experiments)
-many = worth(curve, amplitudes, possible, experiments=experiments)
+few = jb.signature.worth(curve, amplitudes[[0, 3, 6]], possible, experiments=experiments)
+many = jb.signature.worth(curve, amplitudes, possible, experiments=experiments)
 print(few)
 print(many)
 
 # %%
-HTML(to_svg(figures_signature.worth_over_play({"three levels": few, "eight levels": many})))
+jb.plot.worth({"three levels": few, "eight levels": many})
+plt.show()
 
 # %% [markdown]
 # ## An experiment
@@ -77,13 +75,14 @@ play = np.radians(1.7)
 rig = jb.two_link(inertia, play, stiffness, damping, -60.0, linearised=True)
 rate, seconds = 250.0, 25.0 if TINY else 60.0
 chosen = amplitudes[[0, 6]] if TINY else amplitudes
-runs = [jb.simulate(rig, Harmonic(float(a), 2 * np.pi * frequency), duration=30.0 + seconds, rate=rate) for a in chosen]
+drives = [jb.Harmonic(float(a), 2 * np.pi * frequency) for a in chosen]
+runs = [jb.simulate(rig, drive, duration=30.0 + seconds, rate=rate) for drive in drives]
 clean = [np.asarray(run.z)[round(30 * rate) :] for run in runs]
 noisy = [z + 0.01 * z.std() * np.random.default_rng(k).standard_normal(z.size) for k, z in enumerate(clean)]
 
 # %%
 reports = [jb.chaos(z, 1 / rate, clean=False) for z in noisy]
-levels = [Level.measured(float(a), report, frequency) for a, report in zip(chosen, reports)]
+levels = [jb.signature.Level.measured(float(a), report, frequency) for a, report in zip(chosen, reports)]
 for level in levels:
     print(f"{np.degrees(level.amplitude):.2f} deg: {level.word}, exponent per period {level.exponent}")
 
@@ -94,17 +93,19 @@ for level in levels:
 # interval, sometimes in pieces.
 
 # %%
-found = play_from_exponents(curve, levels, plays=possible)
+found = jb.signature.play_from_exponents(curve, levels, plays=possible)
 print(found)
 
 # %%
-HTML(to_svg(figures_signature.play_likelihood(found, truth=float(play))))
+jb.plot.play_likelihood(found, truth=float(play))
+plt.show()
 
 # %% [markdown]
 # On the curve, the levels stand where the play that came out puts them; the bar across is the play's interval.
 
 # %%
-HTML(to_svg(figures_signature.exponent_over_drive(curve, found)))
+jb.plot.exponent_over_drive(curve, found)
+plt.show()
 
 # %% [markdown]
 # ## When the curve is wrong

@@ -21,17 +21,10 @@
 # %%
 import os
 
+import matplotlib.pyplot as plt
 import numpy as np
-from IPython.display import HTML
 
 import jaxbacklash as jb
-from jaxbacklash.effects import Preload
-from jaxbacklash.excitation import Chirp, Multisine
-from jaxbacklash.report import figures
-from jaxbacklash.report.result import cross_check
-from jaxbacklash.report.skeleton_report import skeleton_panels
-from jaxbacklash.skeletons.describing_function import TRAP, axis_crossing
-from jaxbacklash.skeletons.inversion import invert
 
 jb.start()
 seconds = 15.0 if os.environ.get("JAXBACKLASH_TINY") else 30.0
@@ -45,7 +38,7 @@ seconds = 15.0 if os.environ.get("JAXBACKLASH_TINY") else 30.0
 # %%
 joint = jb.base_motion_joint(3.16, np.radians(1.5), 15095.0, 22.0)
 t = np.arange(0.0, seconds, 0.002)
-chirp = Chirp(0.045, 0.0, 12.0, seconds, 1.0)
+chirp = jb.Chirp(0.045, 0.0, 12.0, seconds, 1.0)
 motion = jb.simulate(joint, chirp, duration=seconds, rate=500.0)
 rng = np.random.default_rng(1)
 x = np.asarray(motion.drive.x) + 3e-5 * rng.standard_normal(motion.t.size)
@@ -68,10 +61,12 @@ print(found)
 # cycles, and where the link then stays inside its play and the contact is not felt at all. The paper met both, at 16.25 s.
 
 # %%
-HTML(figures.to_svg(figures.envelopes(found)))
+jb.plot.envelopes(found)
+plt.show()
 
 # %%
-HTML(figures.to_svg(figures.instantaneous_frequency(found)))
+jb.plot.instantaneous_frequency(found)
+plt.show()
 
 # %% [markdown]
 # Lines are what the base does; marks are what the joint is, its natural frequency at the amplitude of that moment. The joint
@@ -84,8 +79,9 @@ HTML(figures.to_svg(figures.instantaneous_frequency(found)))
 # at the edge of the play. It does not: for a pure sine the line cuts at 4/pi of the half play.
 
 # %%
-print(f"a straight line far out cuts the axis at {TRAP:.3f} half plays")
-HTML(figures.to_svg(figures.skeleton_force(found)))
+print(f"a straight line far out cuts the axis at {4 / np.pi:.3f} half plays")
+jb.plot.skeleton(found)
+plt.show()
 
 # %% [markdown]
 # How much that costs is quickly seen: the same amplitudes, read in three ways. The third is what `skeleton` uses. It takes the
@@ -95,10 +91,9 @@ HTML(figures.to_svg(figures.skeleton_force(found)))
 # %%
 wavelet = found.wavelet
 upper = wavelet.kept & (wavelet.amplitude > np.median(wavelet.amplitude[wavelet.kept]))
-_, line = axis_crossing(wavelet.amplitude[upper], wavelet.restoring_force[upper])
-sine = invert(wavelet.terms, wavelet.kept, inertia=3.16, way="sine")
-measured = invert(wavelet.terms, wavelet.kept, inertia=3.16, way="waveform")
-print(f"straight line, upper half            {np.degrees(2 * line):.4f} deg")
+slope, offset = np.polyfit(wavelet.amplitude[upper], wavelet.restoring_force[upper], 1)
+sine, measured = wavelet.inverted("sine", inertia=3.16), wavelet.inverted("waveform", inertia=3.16)
+print(f"straight line, upper half            {np.degrees(-2 * offset / slope):.4f} deg")
 print(f"describing function of a sine        {np.degrees(2 * sine.values[0]):.4f} deg")
 print(f"describing function of the motion    {np.degrees(2 * measured.values[0]):.4f} deg; the truth is 1.5")
 
@@ -113,8 +108,7 @@ fit = jb.fit(record, inertia=3.16, starts=1)
 print(fit)
 
 # %%
-check = cross_check(fit)
-print(check["text"])
+print(jb.cross_check(fit))
 
 # %% [markdown]
 # ## When there is no skeleton
@@ -134,10 +128,10 @@ print(jb.skeleton(record.replace(x=many, z=0.6 * np.roll(many, 30)), inertia=3.1
 # Figure 11. Here a random force of many lines pushes a link that 120 N m hold down.
 
 # %%
-held = joint.with_effects(Preload(120.0))
+held = joint.with_effects(jb.Preload(120.0))
 lines = np.arange(2.0, 60.0, 0.11)
 phases = np.random.default_rng(3).uniform(0.0, 2.0 * np.pi, lines.size)
-push = Multisine(np.full(lines.size, 1.0), 2.0 * np.pi * lines, phases, as_force=True)
+push = jb.Multisine(np.full(lines.size, 1.0), 2.0 * np.pi * lines, phases, as_force=True)
 shaken = jb.simulate(held, push, duration=2.0 * seconds, rate=500.0, y0=np.radians(0.75) + 120.0 / 15095.0)
 noise = 2e-6 * np.random.default_rng(4).standard_normal(shaken.t.size)
 test = jb.Record(np.asarray(shaken.t), {"F": np.asarray(shaken.drive.force), "y": np.asarray(shaken.y) + noise})
@@ -147,15 +141,18 @@ response = jb.frequency_response(test, segment=4.0, band=(4.0, 40.0))
 print(response)
 
 # %%
-HTML(figures.to_svg(figures.frequency_response(response)))
+jb.plot.frequency_response(response)
+plt.show()
 
 # %% [markdown]
 # Stiffness, damping and inertia, to be set beside those of the sweep; the play it cannot know. H1 and H2 are what every analyser
 # draws; the numbers come from the spectra of the whole record, since a window blunts the resonance.
 
 # %% [markdown]
-# All the pictures at once, as the page of `jaxbacklash skeleton sweep.csv --inertia 3.16 --out skeleton1` has them:
+# Two pictures of the sweep are left: its backbone with the damping, and the ridge that the wavelet's path follows. All of them
+# stand on the page that `jaxbacklash skeleton sweep.csv --inertia 3.16 --out skeleton1` writes.
 
 # %%
-for panel in skeleton_panels(found):
-    print(f"{panel.title}: {panel.sentence}")
+jb.plot.backbone(found)
+jb.plot.ridge(found)
+plt.show()

@@ -101,7 +101,7 @@ assert len(jaxbacklash.catalogue()) > 20
 import jaxbacklash.cli, jaxbacklash.commands.refine, jaxbacklash.report.map_report
 names = {name: getattr(jaxbacklash, name) for name in jaxbacklash.__all__}
 assert len(names) > 50 and set(names) <= set(dir(jaxbacklash))
-assert [name for name, value in names.items() if isinstance(value, types.ModuleType)] == ["plot"]
+assert sorted(name for name, value in names.items() if isinstance(value, types.ModuleType)) == ["dynamics", "plot", "signature"]
 """
     assert fresh(code) == ""
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import jaxbacklash as jb
-from jaxbacklash.cross_check import cross_check
 from jaxbacklash.plot.drawing import svg_of
 from jaxbacklash.report.result import cross_check as cross_check_json
 from jaxbacklash.report.skeleton_report import skeleton_panels
+from jaxbacklash.second_opinion import cross_check
 
 from .test_bad_input import CASES
 from .test_cli import call as call  # the fixture that runs the command line

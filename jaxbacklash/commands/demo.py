@@ -7,17 +7,16 @@ from importlib import resources
 from pathlib import Path
 
 from ..criticism import refine
-from ..records import Record, read_record
+from ..records import Record
+from ..shipped import demo_records
 from .common import out_folder, progress
 from .refine import deliver
 
 
 def shipped() -> tuple[Record, Record, float]:
     """The demo's record, its held-out record, and the inertia [kg m^2] its user is told."""
-    data = resources.files("jaxbacklash") / "data"
-    told = json.loads((data / "demo.json").read_text(encoding="utf-8"))["told"]
-    with resources.as_file(data / "demo_train.csv") as path, resources.as_file(data / "demo_heldout.csv") as other:
-        return read_record(path), read_record(other), float(told["inertia"])
+    told = resources.files("jaxbacklash") / "data" / "demo.json"
+    return *demo_records(), float(json.loads(told.read_text(encoding="utf-8"))["told"]["inertia"])
 
 
 def run(*, out: Path, as_json: bool) -> None:

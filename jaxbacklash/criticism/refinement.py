@@ -44,6 +44,11 @@ class Refinement:
         """Names of what was missing."""
         return tuple(sorted(self.fit.system.effects))
 
+    @property
+    def moved(self) -> tuple[dict[str, Moved], ...]:
+        """At each stage how far play, stiffness and damping moved from the stage before; nothing at the first."""
+        return tuple(steps(self.stages))
+
     def __str__(self) -> str:
         return text(self)
 

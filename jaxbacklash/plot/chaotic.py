@@ -23,6 +23,10 @@ def chaos(found: ChaosReport, unit: str = "", *, ax: Where = None) -> list[Axes]
     found : from `jaxbacklash.chaos`
     unit : of the series
     ax : where to draw; on one axes, how neighbours part
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     axes = panels(ax, mosaic="sp;uw", height=TALL)
     stretching(found, ax=axes[0])
@@ -42,6 +46,10 @@ def attractor(found: ChaosReport, unit: str = "", *, ax: Where = None) -> list[A
     found : from `jaxbacklash.chaos`
     unit : of the series
     ax : where to draw; on one axes, cleaned if it was
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     both = [("as measured", found.series, MEASURED)]
     if found.cleaned is not None:
@@ -70,6 +78,10 @@ def stretching(found: ChaosReport, *, ax: Where = None) -> list[Axes]:
     ----------
     found : from `jaxbacklash.chaos`
     ax : where to draw
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     curve, dt = found.curve, found.dt
     axes = panels(ax, height=MEDIUM)
@@ -105,6 +117,10 @@ def surrogates(found: ChaosReport, *, ax: Where = None) -> list[Axes]:
     ----------
     found : from `jaxbacklash.chaos`
     ax : where to draw; on one axes, the surrogates
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     axes = panels(ax, 1, 2, height=SHORT + 0.4, width_ratios=(1.5, 1))
     left = axes[0]
@@ -136,6 +152,10 @@ def driven_growth(found: ChaosReport, name: str = "z", unit: str = "", *, ax: Wh
     found : from `jaxbacklash.chaos`
     name, unit : what the series is
     ax : where to draw; on one axes, the growth
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     one, dt = found.driven, found.dt
     if one is None or one.surface is None:

@@ -28,6 +28,10 @@ def series(found: ChaosReport, name: str = "series", unit: str = "", *, ax: Wher
     found : from `jaxbacklash.chaos`
     name, unit : what the series is
     ax : where to draw; on one axes, some swings
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     values = found.mean + found.deviation * found.series
     factor, clock = clock_of(found.dt * values.size)
@@ -69,6 +73,10 @@ def delay(found: ChaosReport, *, ax: Where = None) -> list[Axes]:
     ----------
     found : from `jaxbacklash.chaos`
     ax : where to draw
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     axes = panels(ax, height=SHORT)
     ax = axes[0]
@@ -87,6 +95,10 @@ def dimension(found: ChaosReport, *, ax: Where = None) -> list[Axes]:
     ----------
     found : from `jaxbacklash.chaos`
     ax : where to draw; on one axes, E1 and E2
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     axes = panels(ax, 1, 2, height=SHORT + 0.3)
     left, right = axes[0], axes[-1]
@@ -117,6 +129,10 @@ def correlation(found: ChaosReport, *, ax: Where = None) -> list[Axes]:
     ----------
     found : from `jaxbacklash.chaos`
     ax : where to draw; on one axes, the sums
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     one = found.correlation
     axes = panels(ax, 1, 2, height=SHORT + 0.4)

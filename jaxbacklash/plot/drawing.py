@@ -195,12 +195,17 @@ def ink(ax: Axes) -> Any:
     return ax.xaxis.label.get_color()
 
 
-def legend_above(axes: Sequence[Axes], handles: Any = None, labels: Any = None, *, columns: int = 3) -> None:
-    """Names of the marks above the first axes, where no curve runs through them; inside an axes that the user laid out."""
+def legend_above(
+    axes: Sequence[Axes], handles: Any = None, labels: Any = None, *, columns: int = 3, all_panels: bool = False
+) -> None:
+    """Names of the marks above the first axes, or above ``all_panels``, where no curve runs through them; inside an axes that the
+    user laid out."""
     ax = axes[0]
     if handles is None:
         handles, labels = ax.get_legend_handles_labels()
-    if isinstance(ax.figure, Page):
+    if isinstance(ax.figure, Page) and all_panels:
+        ax.figure.legend(handles, labels, loc="outside upper right", ncols=columns)
+    elif isinstance(ax.figure, Page):
         ax.legend(handles, labels, loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=columns, borderaxespad=0.2)
     else:
         ax.legend(handles, labels, loc="best")

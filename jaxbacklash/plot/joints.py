@@ -55,7 +55,7 @@ def phase_plane(
         one.xaxis.set_major_locator(MaxNLocator(6 if len(paths) > 1 else 9))
     axes[0].set_ylabel(with_unit("z′", f"{unit}/s"))
     if play:
-        legend_above(axes[-1:], [Patch(color=GAP, alpha=0.4, lw=0)], [_play_text(play, unit)])
+        legend_above(axes, [Patch(color=GAP, alpha=0.4, lw=0)], [_play_text(play, unit)], all_panels=True)
     return axes
 
 
@@ -101,7 +101,7 @@ def restoring_force(
     ax.axhline(0.0, color=ink(ax), lw=0.5)
     ax.margins(x=0.02, y=0.08)
     if play:
-        _name_play(ax, play, length_unit)
+        ax.fill([], [], color=GAP, alpha=0.4, lw=0, label=_play_text(play, length_unit))
     ax.set(xlabel=with_unit("z", length_unit), ylabel=with_unit(label, unit))
     in_degrees(ax, "top", length_unit)
     ax.legend(loc="best", markerscale=1.2)
@@ -141,7 +141,7 @@ def force_loop(
     axes[0].set_ylabel(with_unit(label, unit))
     shade, words = [Patch(color=GAP, alpha=0.4, lw=0)], ["a tenth of the sliding force"]
     lines = axes[0].get_lines()[::2] if len(axes) == 1 else []
-    legend_above(axes[-1:], [*lines, *shade], [*(str(line.get_label()) for line in lines), *words])
+    legend_above(axes, [*lines, *shade], [*(str(line.get_label()) for line in lines), *words], all_panels=True)
     return axes
 
 
@@ -168,16 +168,6 @@ def _play_text(play: tuple[float, float], unit: str) -> str:
     if unit == "rad":
         text += f" = {short(math.degrees(high - low), 4)} deg"
     return text
-
-
-def _name_play(ax: Axes, play: tuple[float, float], unit: str) -> None:
-    low, high = play
-    place = ("data", "axes fraction")
-    arrow = {"arrowstyle": "<->", "color": ink(ax), "lw": 0.8}
-    ax.annotate("", (low, 0.05), (high, 0.05), xycoords=place, arrowprops=arrow)
-    ax.annotate(
-        _play_text(play, unit), (0.5 * (low + high), 0.065), xycoords=place, ha="center", va="bottom", fontsize=8.0
-    )
 
 
 def _reach(values: np.ndarray) -> tuple[float, float]:

@@ -13,8 +13,7 @@ from matplotlib.colors import BoundaryNorm, LinearSegmentedColormap, ListedColor
 from .drawing import Where, column, empty, ink, legend_above, panels, picture
 from .style import GAP, HELDOUT, MEASURED, MEDIUM, MODEL, TALL, with_unit
 
-SIGNED = LinearSegmentedColormap.from_list("signed", ["#134a78", MEASURED, "#f4f4f2", MODEL, "#7a2c05"])
-SIGNED.set_bad(GAP)
+SIGNED = LinearSegmentedColormap.from_list("signed", ["#134a78", MEASURED, "#f4f4f2", MODEL, "#7a2c05"]).with_extremes(bad=GAP)
 PERIODS = 6
 """Periods that have a colour of their own; longer ones share one."""
 PERIOD_COLOURS = ["#8a8f98", "#a32c0e", "#dcecf7", "#9cc9e8", "#2b83c6", "#0f9d78", "#8ccf6a", "#f1d33c", "#d9a01a"]
@@ -147,8 +146,9 @@ def bifurcation_diagram(
     if not shown:
         return empty(ax, "No samples to draw.")
     axes = panels(ax, len(shown), height=1.1 + 1.7 * len(shown), sharex=True, sharey=True)
-    for one, (label, samples), colour in zip(cycle(axes), shown.items(), cycle((MEASURED, MODEL, HELDOUT))):
-        scatter_samples(one, x, samples, colour, play)
+    bands = [play] * len(axes) + [None] * len(shown)  # once on each axes
+    for one, (label, samples), colour, band in zip(cycle(axes), shown.items(), cycle((MEASURED, MODEL, HELDOUT)), bands):
+        scatter_samples(one, x, samples, colour, band)
         one.set(ylabel=f"{'p' if length == 'half plays' else 'z'} [{length}]", xlim=(x.min(), x.max()))
         if len(axes) == len(shown):
             one.set_title(label, loc="left")

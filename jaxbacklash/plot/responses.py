@@ -18,6 +18,10 @@ def frequency_response(found: Response, *, ax: Where = None) -> list[Axes]:
     ----------
     found : from `jaxbacklash.frequency_response`
     ax : where to draw; on one axes, the size
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     values = {name: value.value or 0.0 for name, value in found.values.items()}
     line, used = found.frequency, found.used
@@ -44,7 +48,7 @@ def frequency_response(found: Response, *, ax: Where = None) -> list[Axes]:
         readable_log(one, "x", low, high)
         whole = one.get_xaxis_transform()
         one.fill_between(line[shown], 0.0, 1.0, where=~used[shown], transform=whole, color=GAP, alpha=0.18, lw=0)
-    legend_above(axes, columns=5)
+    legend_above(axes, columns=5, all_panels=True)
     return axes
 
 

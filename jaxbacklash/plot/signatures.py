@@ -22,6 +22,10 @@ def exponent_over_drive(map_: ExponentMap, found: PlayFromChaos | None = None, *
     map_ : without further axes
     found : the play to place its levels by; a bar across is the play's interval, a bar along the exponent's
     ax : where to draw
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     axes = panels(ax, height=MEDIUM)
     ax = axes[0]
@@ -72,6 +76,10 @@ def play_likelihood(
     truth : the true play, where known [rad]
     fit : the interval of a direct fit, for comparison [rad]
     ax : where to draw
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     axes = panels(ax, 2, height=MEDIUM + 0.6, height_ratios=(1.3, 1.0), sharex=True)
     lower = axes[-1]
@@ -124,6 +132,10 @@ def pattern_region(
     match : from `jaxbacklash.signature.match_pattern`
     across, up : names of the two axes
     ax : where to draw; on one axes, the best chance
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     names = list(match.axes)
     if across not in names or up not in names or across == up:
@@ -152,6 +164,10 @@ def worth(results: dict[str, Worth] | Worth, *, ax: Where = None) -> list[Axes]:
     ----------
     results : what to call each set of levels, and its imagined experiments; or those of one set
     ax : where to draw; on one axes, the first set
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     sets = results if isinstance(results, dict) else {"": results}
     axes = panels(ax, 1, len(sets), height=MEDIUM, sharey=True)

@@ -30,6 +30,10 @@ def envelopes(found: Skeletons, *, ax: Where = None) -> list[Axes]:
     ----------
     found : from `jaxbacklash.skeleton`
     ax : where to draw; on one axes, what answers
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     record = found.record
     unit = "m" if found.translational else "rad"
@@ -57,7 +61,7 @@ def envelopes(found: Skeletons, *, ax: Where = None) -> list[Axes]:
     _shade_masked(last, _best(found))
     last.set_xlabel("time [s]")
     last.set_xlim(record.t[0], record.t[-1])
-    legend_above(axes, *_once(axes), columns=4)
+    legend_above(axes, *_once(axes), columns=4, all_panels=True)
     return axes
 
 
@@ -69,6 +73,10 @@ def instantaneous_frequency(found: Skeletons, *, ax: Where = None) -> list[Axes]
     ----------
     found : from `jaxbacklash.skeleton`
     ax : where to draw
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     if not any(method.t.size for method in found.methods):
         return empty(ax, "No oscillation was found.")
@@ -89,7 +97,7 @@ def instantaneous_frequency(found: Skeletons, *, ax: Where = None) -> list[Axes]
     whole = [m.frequency[m.along.whole] for m in found.methods if m.along is not None and m.along.whole.any()]
     highest = [float(np.quantile(frequency, 0.98)) for frequency in whole]
     ax.set_ylim(0.0, 1.25 * max(highest, default=1.0))
-    legend_above(axes, *_once(axes), columns=4)
+    legend_above(axes, *_once(axes), columns=4, all_panels=True)
     return axes
 
 
@@ -101,6 +109,10 @@ def ridge(found: Skeletons, *, ax: Where = None) -> list[Axes]:
     ----------
     found : from `jaxbacklash.skeleton`
     ax : where to draw
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     along = found.wavelet.along
     if not isinstance(along, WaveletFundamental):
@@ -136,6 +148,10 @@ def backbone(found: Skeletons, *, ax: Where = None) -> list[Axes]:
     ----------
     found : from `jaxbacklash.skeleton`
     ax : where to draw; on one axes, the natural frequency
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     if not any(np.any(method.kept) for method in found.methods):
         return empty(ax, "No part of the record counts.")
@@ -157,7 +173,7 @@ def backbone(found: Skeletons, *, ax: Where = None) -> list[Axes]:
     if len(axes) > 1:
         left.set_title("backbone", loc="left")
         _damping(axes[1], found, unit)
-    legend_above(axes[-1:], *_once(axes), columns=4)
+    legend_above(axes[-1:], *_once(axes), columns=4, all_panels=True)
     return axes
 
 
@@ -183,6 +199,10 @@ def skeleton(found: Skeletons, *, ax: Where = None) -> list[Axes]:
     ----------
     found : from `jaxbacklash.skeleton`
     ax : where to draw
+
+    Returns
+    -------
+    the axes, or an array of them
     """
     best = _best(found)
     if not np.any(best.kept):

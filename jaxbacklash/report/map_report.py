@@ -7,9 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from ..plot.drawing import on_page, to_png_data_uri, to_svg
+from ..plot.drawing import Page, on_page, to_png_data_uri, to_svg
 from ..plot.maps import LABELS, exponent_and_period_map, exponent_curve
 from .html import Panel, write_report
 
@@ -77,7 +76,7 @@ def _cut(map_: Any, names: list[str]) -> tuple[dict[str, int], str]:
     return at, f" Cut at {', '.join(words)}."
 
 
-def _two(map_: Any, at: dict[str, int], names: list[str]) -> Figure:
+def _two(map_: Any, at: dict[str, int], names: list[str]) -> Page:
     axes = [map_.coordinates[name] for name in names]
     return on_page(
         exponent_and_period_map, axes[0].data, axes[1].data, map_.values("lyapunov", at), map_.values("period", at), names=names,
@@ -85,7 +84,7 @@ def _two(map_: Any, at: dict[str, int], names: list[str]) -> Figure:
     )  # fmt: skip
 
 
-def _one(map_: Any, at: dict[str, int], name: str) -> Figure:
+def _one(map_: Any, at: dict[str, int], name: str) -> Page:
     axis = map_.coordinates[name]
     return on_page(
         exponent_curve, axis.data, map_.values("lyapunov", at), map_.values("lyapunov_stderr", at), name=name,

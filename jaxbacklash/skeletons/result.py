@@ -9,7 +9,7 @@ import numpy as np
 
 from ..records import Record
 from .fundamental import Fundamental
-from .inversion import Terms
+from .inversion import Inversion, Terms, invert
 from .masks import Mask
 
 NAMES = ("backlash", "stiffness", "damping")
@@ -99,6 +99,20 @@ class Skeleton:
         if self.t.size < 2:
             return 1.0
         return float(1.0 - np.sum(np.gradient(self.t)[self.kept]) / (self.t[-1] - self.t[0]))
+
+    def inverted(self, way: str = "waveform", inertia: float | None = None) -> Inversion | None:
+        """Half play, stiffness and damping from the kept points once more, by another describing function of the dead zone.
+
+        Parameters
+        ----------
+        way : ``"waveform"``: of the motion that was measured, ``"sine"``: of a pure sine, which misreads the play
+        inertia : J [kg m^2]; None needs a measured force
+
+        Returns
+        -------
+        None where too few points are kept
+        """
+        return None if self.terms is None else invert(self.terms, self.kept, inertia=inertia, way=way)
 
     def curve(self, what: str, bins: int = 20) -> Curve:
         """``"stiffness"``, ``"damping"``, ``"restoring_force"``, ``"damping_force"`` or ``"frequency"`` over amplitude.

@@ -43,6 +43,9 @@ class CrossCheck:
     apart: tuple[tuple[str, str, float], ...] = ()
     loop: dict[str, Any] | None = None
 
+    def __str__(self) -> str:
+        return self.text
+
     def as_json(self) -> dict[str, Any]:
         """The entries ``hilbert``, ``wavelet``, ``agrees``, ``text``, ``masked_fraction`` of result.json."""
         found: dict[str, Any] = {}
