@@ -15,9 +15,12 @@ from .effects import Contact
 from .errors import BadInput, NoAnswer
 from .fitting import Fit
 from .fitting.loop import read_plateau
+from .frames import dataframe
 from .pointwise import along
+from .showing import Shown
 from .signals import choose_intervals, fit_spline, span
 from .skeletons import Skeleton, Skeletons, skeleton
+from .skeletons.result import INDEX
 
 AGREE = 3.0
 """Standard errors of the difference within which two methods agree."""
@@ -30,7 +33,7 @@ METHODS = {"hilbert": "Hilbert transform", "wavelet": "wavelet"}
 
 
 @dataclass(frozen=True)
-class CrossCheck:
+class CrossCheck(Shown):
     """What other methods say about a fit: ``agrees`` is None where none could judge; ``why`` and ``text`` are sentences.
 
     ``apart`` holds (method, parameter, standard errors) of every disagreement.
@@ -45,6 +48,12 @@ class CrossCheck:
 
     def __str__(self) -> str:
         return self.text
+
+    def to_dataframe(self) -> Any:
+        """What each method tells of each parameter, see `Skeletons.to_dataframe`; no rows where none could be asked."""
+        if self.skeletons is None:
+            return dataframe({"method": [], "parameter": [], "value": [], "stderr": [], "unit": [], "why": []}, INDEX)
+        return self.skeletons.to_dataframe()
 
     def as_json(self) -> dict[str, Any]:
         """The entries ``hilbert``, ``wavelet``, ``agrees``, ``text``, ``masked_fraction`` of result.json."""

@@ -15,9 +15,11 @@ import jax.numpy as jnp
 import numpy as np
 
 from .excitation import AbstractExcitation, Rest, Sampled
+from .frames import dataframe
 from .mechanics import Drive
 from .precision import require_double_precision
 from .records import Record
+from .showing import Shown
 from .system import System
 
 Array = Any
@@ -40,7 +42,7 @@ class Driven(eqx.Module):
     t0: Any
 
 
-class Trajectory(eqx.Module):
+class Trajectory(Shown, eqx.Module):
     """A simulated motion at N times.
 
     ``t`` (N,) [s]; ``states`` one (N,) array per name in ``System.state_names``; ``drive`` at the same times;
@@ -71,6 +73,23 @@ class Trajectory(eqx.Module):
     def z(self) -> Array:
         """Relative motion y - x [rad], (N,)."""
         return self.y - self.x
+
+    def __str__(self) -> str:
+        return f"a simulated motion of {self.t.size} samples from {float(self.t[0]):g} to {float(self.t[-1]):g} s"
+
+    def to_dataframe(self) -> Any:
+        """The motion as a `pandas.DataFrame` along ``t`` [s]: ``x``, ``y``, ``dy``, ``z``, what is ``observed``, the ``force``.
+
+        Examples
+        --------
+        >>> joint = jb.base_motion_joint(inertia=3.16, backlash=0.026, stiffness=11000.0, damping=20.0)
+        >>> motion = jb.simulate(joint, jb.Harmonic(0.05, 10.0), duration=1.0, rate=100.0)
+        >>> list(motion.to_dataframe().columns)
+        ['x', 'y', 'dy', 'z', 'observed', 'force']
+        """
+        columns = {name: np.asarray(getattr(self, name)) for name in ("t", "x", "y", "dy", "z", "observed")}
+        force = np.broadcast_to(np.asarray(self.drive.force), columns["t"].shape)
+        return dataframe({**columns, "force": force}, "t")
 
 
 def simulate(

@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..showing import Shown
+
 if TYPE_CHECKING:
     from ..records import Record
 
 
 @dataclass(frozen=True)
-class Cause:
+class Cause(Shown):
     """Something about the record that explains a misfit.
 
     Attributes
@@ -46,6 +48,10 @@ class Cause:
     certain: bool = True
     parameters: dict[str, float | None] = field(default_factory=dict)
     record: Record | None = None
+
+    def __str__(self) -> str:
+        after = f" Pass {self.remedy}." if self.remedy.startswith("--") else f" {self.remedy}." if self.remedy else ""
+        return f"{self.sentence}.{after}"
 
     @property
     def undone(self) -> str:

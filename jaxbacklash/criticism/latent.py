@@ -13,6 +13,7 @@ beside the torque (each within about half of its value): the torque is then what
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -24,10 +25,12 @@ from ..fitting.fit import prepare
 from ..fitting.problem import Problem, Unknowns
 from ..fitting.setup import first_guess, free_names, make_problem
 from ..fitting.shooting import Blocks, Trajectory
+from ..frames import dataframe
 from ..parameters import unit_text, values, with_values
 from ..pointwise import along
 from ..precision import require_double_precision
 from ..records import Record
+from ..showing import Shown
 from ..system import System
 from .smoother import Improved, Point, Smoother, finish, improve, make_hats, misfit
 
@@ -62,7 +65,7 @@ class Inside:
 
 
 @dataclass(frozen=True)
-class Latent:
+class Latent(Shown):
     """The missing torque at N times, and where the joint was then.
 
     Attributes: ``t`` [s]; ``record`` (N,) which record; ``torque`` and its standard error ``stderr`` [unit]; ``y``, ``dy``,
@@ -115,6 +118,12 @@ class Latent:
         if not self.evident:
             return f"No torque is missing beyond {2 * float(np.median(self.stderr)):.2g} {self.unit}."
         return f"A torque of {self.rms:.3g} {self.unit} rms is missing, known to {float(np.median(self.stderr)):.2g}."
+
+    def to_dataframe(self) -> Any:
+        """The torque as a `pandas.DataFrame` along ``t`` [s]: ``record``, ``torque`` and ``stderr``, and the smoothed motion."""
+        names = ("t", "record", "torque", "stderr", "y", "dy", "x", "dx", "z", "dz", "deflection", "side")
+        units = {"t": "s", "torque": self.unit, "stderr": self.unit}
+        return dataframe({name: np.asarray(getattr(self, name)) for name in names}, "t", units=units)
 
 
 def missing_torque(fit: Fit, *, hold: bool = False) -> Latent:

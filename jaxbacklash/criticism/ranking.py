@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
@@ -12,9 +13,11 @@ import numpy as np
 from ..fitting import Fit, Score
 from ..fitting.problem import Unknowns
 from ..fitting.setup import make_problem
+from ..frames import dataframe
 from ..mechanics import AbstractEffect
 from ..parameters import free_specs, specs, values
 from ..precision import require_double_precision
+from ..showing import Shown
 from ..system import System
 from .candidates import Candidate, rank
 from .evidence import gain
@@ -56,8 +59,11 @@ class Ranked:
 
 
 @dataclass(frozen=True)
-class Ranking:
-    """Absent effects, best first; ``current`` rms over noise of the model as it is."""
+class Ranking(Shown):
+    """Absent effects, best first; ``current`` rms over noise of the model as it is.
+
+    Prints itself; in a notebook it shows a table and its picture (`jaxbacklash.plot.ranking`).
+    """
 
     entries: tuple[Ranked, ...]
     current: float
@@ -73,6 +79,19 @@ class Ranking:
 
     def __str__(self) -> str:
         return "\n".join(table(self))
+
+    def to_dataframe(self) -> Any:
+        """The ranking as a `pandas.DataFrame`, a row for each ``effect``: ``rms_over_noise`` with it added, as well as that is
+        known, ``evidence``, ``refitted`` where a refit has told both, and ``why`` there is no number.
+        """
+        return dataframe(
+            {
+                "effect": [one.name for one in self], "rms_over_noise": [one.rms_over_noise for one in self],
+                "evidence": [one.evidence for one in self], "refitted": [one.refitted for one in self],
+                "why": [one.why for one in self],
+            },
+            "effect", current=self.current,
+        )  # fmt: skip
 
 
 def table(ranking: Ranking, most: int = 10) -> list[str]:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import pairwise
+from typing import Any
 
 from ..causes import Cause
 from ..fitting import Fit, Score, measures, percent
 from ..fitting.print_estimate import line
 from ..fitting.result import DOUBTED, at_most, doubt
+from ..frames import dataframe, known
 from ..parameters import channel_unit
+from ..showing import Shown
 from .experiment import Experiment
 from .ranking import of_stage, table
 from .steps import Stage
@@ -19,8 +22,8 @@ JOINT = {"backlash": "b", "stiffness": "k", "damping": "c"}
 
 
 @dataclass(frozen=True)
-class Refinement:
-    """What the loop found.
+class Refinement(Shown):
+    """What the loop found. Prints itself; in a notebook it shows a table and its picture (`jaxbacklash.plot.stages`).
 
     Attributes: ``stages``, the last one is the model kept; ``alternatives``, other sets of effects that the record cannot
     tell apart from it; ``experiments`` that would separate the first of them; ``verdict``; ``seconds``; ``causes`` of misfit
@@ -51,6 +54,29 @@ class Refinement:
 
     def __str__(self) -> str:
         return text(self)
+
+    def to_dataframe(self) -> Any:
+        """The stages as a `pandas.DataFrame`, a row each.
+
+        Columns: the effect ``added``, those ``dropped``, the errors over the noise on the record and on a held-out one, and every
+        parameter's value by its name, NaN where it is not in the model or not found.
+        """
+        names = dict.fromkeys(name for stage in self.stages for name in stage.fit.parameters)
+        fits = [stage.fit for stage in self.stages]
+        held = [fit.heldout for fit in fits]
+        values = {
+            name: known([None if name not in fit.parameters else fit.parameters[name].value for fit in fits]) for name in names
+        }
+        units = {name: one.unit for fit in fits for name, one in fit.parameters.items()}
+        return dataframe(
+            {
+                "stage": range(len(fits)), "added": [stage.added or "" for stage in self.stages],
+                "dropped": [", ".join(stage.dropped) for stage in self.stages], "rms_over_noise": [fit.score.rms for fit in fits],
+                "median_over_noise": [fit.score.median for fit in fits],
+                "heldout_rms_over_noise": known([None if score is None else score.rms for score in held]), **values,
+            },
+            "stage", units=units, verdict=self.verdict.word,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 
 from ..fitting import Fit, error_in_words
+from ..frames import dataframe
+from ..showing import Shown
 from .failures import Dependence, depends
 from .latent import Latent, missing_torque
 from .surface import Surface, explain_torque
@@ -16,7 +18,7 @@ from .words import NOISE, headline, sentences
 
 
 @dataclass(frozen=True)
-class Findings:
+class Findings(Shown):
     """Where and how a model fails.
 
     Attributes: ``sentences`` for a person, most telling first; a single one where nothing fails; ``dependences`` every question
@@ -43,6 +45,21 @@ class Findings:
 
     def __str__(self) -> str:
         return "\n".join(self.sentences)
+
+    def to_dataframe(self) -> Any:
+        """Every question that was asked as a `pandas.DataFrame`, the strongest first: the ``coordinate``, whether the torque's
+        ``size`` or ``value`` was asked of it, the ``strength`` of the answer (share of the ranks' variance), the ``trend`` (rank
+        correlation) and the probability ``p`` of as much by chance.
+        """
+        asked = self.dependences
+        return dataframe(
+            {
+                "coordinate": [one.coordinate for one in asked], "of": [one.of for one in asked],
+                "label": [one.label for one in asked], "strength": [one.strength for one in asked],
+                "trend": [one.trend for one in asked], "p": [one.p for one in asked],
+            },
+            ["coordinate", "of"], sentences=list(self.sentences),
+        )  # fmt: skip
 
     def as_json(self) -> dict[str, Any]:
         """Findings and the missing torque as entries of result.json."""

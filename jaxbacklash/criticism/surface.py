@@ -9,12 +9,15 @@ out of sample: a table made from other stretches of the record predicts the stre
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 
-from ..effects.learned import LearnedTorque
+from ..effects.learned import UNITS, LearnedTorque
+from ..frames import dataset
 from ..parameters import values
+from ..showing import Shown
 from ..side_by_side import side_by_side
 from ..system import System
 from .explain import explain, prepare
@@ -38,7 +41,7 @@ LEFT = 0.7
 
 
 @dataclass(frozen=True)
-class Surface:
+class Surface(Shown):
     """The missing torque as a table over its best coordinates.
 
     Attributes: ``coordinates``; ``knots`` a row for each; ``table`` (R,) values at the knots and their standard errors
@@ -74,6 +77,18 @@ class Surface:
         names = " and ".join(LABELS[name] for name in self.coordinates)
         share = "more than 99" if self.share > 0.995 else f"{100 * self.share:.0f}"
         return f"A torque that depends on {names} alone explains {share} % of it."
+
+    def to_dataset(self) -> Any:
+        """The table as an `xarray.Dataset`: ``torque`` and ``stderr`` [unit] over the knots of each coordinate."""
+        shape = [len(row) for row in self.knots]
+        return dataset(
+            {
+                "torque": (self.coordinates, np.reshape(self.table, shape), self.unit),
+                "stderr": (self.coordinates, np.reshape(self.stderr, shape), self.unit),
+            },
+            {name: (row, UNITS.get(name, "rad")) for name, row in zip(self.coordinates, self.knots)},
+            share=self.share,
+        )  # fmt: skip
 
 
 def explain_torque(latent: Latent, sets: tuple[tuple[str, ...], ...] = SETS) -> Surface:

@@ -11,6 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..frames import dataframe, dataset
+from ..showing import html_of, print_of, table_of
 from .family import Family
 from .follow import follow
 from .periodicity import CHAOTIC, periodicity, sizes
@@ -45,6 +47,32 @@ class Basins(NamedTuple):
     number: np.ndarray
     attractors: list[Attractor]
     unit: str = "rad"
+
+    def __str__(self) -> str:
+        told = [f"  {100.0 * one.share:5.1f} % of the starts: {one}" for one in self.attractors]
+        return "\n".join([f"{len(told)} attractors from {self.number.size} starts", *told])
+
+    def to_dataset(self) -> Any:
+        """Which attractor each start leads to, as an `xarray.Dataset` over ``y`` and ``dy``: ``number``, -1 for none."""
+        return dataset(
+            {"number": (("y", "dy"), self.number, "1")}, {"y": (self.y, self.unit), "dy": (self.dy, "")},
+            attractors=[str(one) for one in self.attractors],
+        )  # fmt: skip
+
+    def to_dataframe(self) -> Any:
+        """The attractors as a `pandas.DataFrame`, a row each: ``period`` (0: chaotic), ``lyapunov``, ``share`` of the starts."""
+        names = ("period", "lyapunov", "share")
+        return dataframe({"attractor": range(len(self.attractors)),
+                          **{name: [getattr(one, name) for one in self.attractors] for name in names}}, "attractor")  # fmt: skip
+
+    def _repr_html_(self) -> str:
+        return html_of(self)
+
+    def __rich__(self) -> Any:
+        return table_of(self)
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
+        print_of(self, printer, cycle)
 
 
 def basins(

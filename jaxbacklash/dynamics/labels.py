@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..errors import BadInput
+from ..frames import needed
 from ..whole_file import whole_file
 from .periodicity import CHAOTIC, UNRESOLVED
 from .request import KEPT, VARIABLES, Request, package_version
@@ -29,29 +30,17 @@ ABOUT = {
 
 def need_xarray() -> Any:
     """The xarray library, or one sentence about how to get it."""
-    try:
-        import xarray
-    except ImportError:
-        raise BadInput('maps need xarray, which is not installed: pip install "jaxbacklash[sweep]"') from None
-    return xarray
+    return needed("xarray", "a map", "sweep")
 
 
 def need_h5netcdf() -> Any:
     """The library that writes netCDF, or one sentence about how to get it."""
-    try:
-        import h5netcdf
-    except ImportError:
-        raise BadInput('writing netCDF needs h5netcdf, which is not installed: pip install "jaxbacklash[sweep]"') from None
-    return h5netcdf
+    return needed("h5netcdf", "writing netCDF", "sweep")
 
 
 def need_dask_array() -> Any:
     """The library that reads a store piece by piece, or one sentence about how to get it."""
-    try:
-        import dask.array
-    except ImportError:
-        raise BadInput('reading a store needs dask, which is not installed: pip install "jaxbacklash[sweep]"') from None
-    return dask.array
+    return needed("dask.array", "reading a store", "sweep")
 
 
 class Variable(NamedTuple):

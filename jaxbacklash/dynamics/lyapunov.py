@@ -24,7 +24,9 @@ import numpy as np
 
 from ..errors import NoAnswer
 from ..excitation import AbstractExcitation, Harmonic, Rest
+from ..frames import dataframe
 from ..precision import require_double_precision
+from ..showing import html_of, print_of, table_of
 from ..solvers.exact_courses import Course, Joint, advance_course
 from ..solvers.exact_periods import Phase, advance_periods, begin
 from ..solvers.linear_pieces import LinearPieces
@@ -56,6 +58,20 @@ class Exponents(NamedTuple):
     def __str__(self) -> str:
         pairs = ", ".join(f"{v:.5g} ± {e:.2g}" for v, e in zip(self.values, self.stderr))
         return f"Lyapunov exponents {pairs} per unit of time, over {self.time:.5g}"
+
+    def to_dataframe(self) -> Any:
+        """The exponents as a `pandas.DataFrame`, a row each, the largest first: ``value`` and ``stderr`` [1/time]."""
+        columns = {"exponent": range(1, self.values.size + 1), "value": self.values, "stderr": self.stderr}
+        return dataframe(columns, "exponent", time=self.time)
+
+    def _repr_html_(self) -> str:
+        return html_of(self)
+
+    def __rich__(self) -> Any:
+        return table_of(self)
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
+        print_of(self, printer, cycle)
 
 
 def lyapunov_spectrum(

@@ -12,6 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..excitation import AbstractExcitation
+from ..frames import dataframe
 from ..simulation import Trajectory, simulate
 from ..system import System
 from .courses import begins
@@ -27,6 +28,13 @@ class Section(NamedTuple):
     t: np.ndarray
     z: np.ndarray
     dz: np.ndarray
+
+    def __str__(self) -> str:
+        return f"{self.t.size} points of a section" + (f" from {self.t[0]:.5g} to {self.t[-1]:.5g} s" if self.t.size else "")
+
+    def to_dataframe(self) -> Any:
+        """The points as a `pandas.DataFrame` along ``t`` [s]: ``z`` and ``dz``."""
+        return dataframe({"t": self.t, "z": self.z, "dz": self.dz}, "t")
 
 
 def stroboscopic(

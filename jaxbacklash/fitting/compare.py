@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ..errors import BadInput, NoAnswer
 from ..parameters import channel_unit
 from ..records import Record, oriented
+from ..showing import Shown
 from ..system import System
 from .chance import near_noise
 from .fit import predict_with_noise
@@ -17,7 +19,7 @@ from .size import check_size
 
 
 @dataclass(frozen=True)
-class Comparison:
+class Comparison(Shown):
     """A model's windowed prediction of a record; ``noise`` std of the observed channel, in its unit."""
 
     system: System
@@ -46,6 +48,11 @@ class Comparison:
         name = self.record.observed_name
         unit = channel_unit(name, translational=self.translational)
         return "\n".join([self.record.summary(), f"  noise of {name} {self.noise:.3g} {unit}", self.sentence()])
+
+    def to_dataset(self) -> Any:
+        """The record with the prediction as an `xarray.Dataset`, see `Score.to_dataset`."""
+        unit = channel_unit(self.record.observed_name, translational=self.translational)
+        return self.score.to_dataset(unit).assign_attrs(record=self.record.path, noise=self.noise)
 
 
 def compare(

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
+from ..frames import dataframe, known
 from ..parameters import channel_unit
 from ..records import Record
+from ..showing import Shown
 from ..system import System
 from .chance import beyond_chance, explains, near_noise
 from .counts import few_counts
@@ -36,8 +38,8 @@ class Named(Protocol):
 
 
 @dataclass(frozen=True)
-class Fit:
-    """A fitted model.
+class Fit(Shown):
+    """A fitted model. Prints itself; in a notebook it shows a table and its picture (`jaxbacklash.plot.fit`).
 
     ``noise_alone``, per record, is what its samples alone told of the noise, before there was a model.
 
@@ -91,6 +93,34 @@ class Fit:
 
     def __str__(self) -> str:
         return text(self)
+
+    def to_dataframe(self) -> Any:
+        """The parameters as a `pandas.DataFrame`, a row each: ``value``, ``stderr``, ``low`` and ``high`` of the 95 % interval in
+        ``unit``, ``verdict`` and ``why``. NaN where there is no number; no interval where it would hold only if the model were
+        right.
+
+        Examples
+        --------
+        >>> fit.to_dataframe().loc["backlash", ["value", "unit"]].to_list()
+        [0.0257..., 'rad']
+        """
+        found, open_ = self.parameters.values(), doubt(self)
+        ends = [None if open_ else one.ci95 for one in found]
+        return dataframe(
+            {
+                "parameter": list(self.parameters), "value": known([one.value for one in found]),
+                "stderr": known([one.stderr for one in found]), "low": known([None if e is None else e[0] for e in ends]),
+                "high": known([None if e is None else e[1] for e in ends]), "unit": [one.unit for one in found],
+                "verdict": [one.verdict for one in found], "why": [one.why for one in found],
+            },
+            "parameter", rms_over_noise=self.score.rms, model=self.model, effects=sorted(self.system.effects),
+        )  # fmt: skip
+
+    def to_dataset(self, record: int = 0) -> Any:
+        """One of its records with the prediction as an `xarray.Dataset`, see `Score.to_dataset`."""
+        of = self.records[record]
+        unit = channel_unit(of.observed_name, translational=self.translational)
+        return self.scores[record].to_dataset(unit).assign_attrs(record=of.path, noise=self.noise[record])
 
 
 def doubt(fit: Fit) -> str:

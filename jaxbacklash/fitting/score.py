@@ -13,7 +13,9 @@ import equinox as eqx
 import numpy as np
 
 from ..compiled import kept_jit
+from ..frames import dataset
 from ..parameters import values, with_values
+from ..showing import Shown
 from .handed_on import follows, handed_on
 from .led_on import led_on
 from .lengths import SCORE_WINDOW
@@ -34,7 +36,7 @@ ROUNDS, ON = 6, 0.01
 kept_residuals = kept_jit(residuals)
 
 
-class Score(eqx.Module):
+class Score(Shown, eqx.Module):
     """The misfit of one record in units of the noise.
 
     Attributes: ``rms`` over all windows; ``median`` window; ``window_rms`` (K,) per score window, NaN where too short;
@@ -57,6 +59,30 @@ class Score(eqx.Module):
     def nrmse(self) -> float:
         """The error as a share of what was measured, see `nrmse`."""
         return nrmse(self.measured, self.predicted)
+
+    def __str__(self) -> str:
+        return f"prediction error over windows of {self.length:.3g} s: {error_in_words(self)} (median window {self.median:.3g})"
+
+    def to_dataset(self, unit: str = "") -> Any:
+        """What was measured and predicted as an `xarray.Dataset`.
+
+        ``measured``, ``predicted`` [``unit``] and ``residual`` over the noise stand along ``t`` [s]; ``window_rms`` over the
+        noise along ``window``, the windows' starts [s].
+
+        Examples
+        --------
+        >>> seen = fit.score.to_dataset("rad")
+        >>> seen.sizes["t"], seen.measured.attrs["units"]
+        (1001, 'rad')
+        """
+        return dataset(
+            {
+                "measured": ("t", self.measured, unit), "predicted": ("t", self.predicted, unit),
+                "residual": ("t", self.residual, "1"), "window_rms": ("window", self.window_rms, "1"),
+            },
+            {"t": (self.t, "s"), "window": (self.window_times, "s")},
+            observed=self.observed, rms_over_noise=self.rms, median_over_noise=self.median,
+        )  # fmt: skip
 
 
 def nrmse(measured: np.ndarray, predicted: np.ndarray) -> float:

@@ -13,6 +13,7 @@ from ..fitting import Comparison, Fit, Score
 from ..fitting.loop import NOTHING, sliding_level
 from ..parameters import channel_unit, unit_text
 from ..records import MeasuredSeries, Record
+from ..simulation import Trajectory
 from ..system import System
 from .drawing import Drawn, Where
 from .joints import force_loop as loop_of_force
@@ -108,12 +109,12 @@ def residuals(found: Fit | Comparison, *, record: int = 0, ax: Where = None) -> 
     return residual_in_time(score.t, score.residual, window_edges=score.window_times, window_rms=score.window_rms, ax=ax)
 
 
-def record(measured: Record | MeasuredSeries, *, ax: Where = None) -> Drawn:
-    """What was measured, one panel a channel.
+def record(measured: Record | MeasuredSeries | Trajectory, *, ax: Where = None) -> Drawn:
+    """What was measured, or simulated, one panel a channel.
 
     Parameters
     ----------
-    measured : a record, or a series
+    measured : a record, a series, or a motion from `jaxbacklash.simulate`
     ax : as many axes as there are channels, or one for the first of them; a figure or part of one; None: a new figure
 
     Returns
@@ -122,6 +123,11 @@ def record(measured: Record | MeasuredSeries, *, ax: Where = None) -> Drawn:
     """
     if isinstance(measured, MeasuredSeries):
         return channels_in_time(measured.t, {measured.name: (measured.values, measured.unit)}, ax=ax)
+    if isinstance(measured, Trajectory):
+        moved = {"x": measured.x} if np.any(measured.drive.x) else {}
+        pushed = {"F": np.broadcast_to(measured.drive.force, measured.t.shape)} if np.any(measured.drive.force) else {}
+        channels = {**pushed, **moved, "z" if moved else "y": measured.z if moved else measured.y}
+        return channels_in_time(measured.t, {name: (np.asarray(v), channel_unit(name)) for name, v in channels.items()}, ax=ax)
     return channels_in_time(measured.t, {name: (v, channel_unit(name)) for name, v in measured.channels.items()}, ax=ax)
 
 

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 
 from .drawing import Where, empty, ink, legend_above, panels, picture, readable_log
 from .style import GAP, HELDOUT, MEASURED, MODEL, SHORT, format_evidence, is_number, short
+from .words import error_with, stage_name
 
 MOST_BARS = 12
 
@@ -52,12 +53,6 @@ def error_by_stage(stages: Sequence[Mapping[str, Any]], *, ax: Where = None) -> 
     ax.grid(False, axis="x")
     legend_above(axes)
     return axes
-
-
-def error_with(candidate: Mapping[str, Any]) -> Any:
-    """The error with an effect added, as its refit found it, else as predicted."""
-    known = candidate.get("refitted_rms_over_noise")
-    return known if is_number(known) else candidate.get("predicted_rms_over_noise")
 
 
 @picture
@@ -114,15 +109,6 @@ def candidate_ranking(
     ax.grid(False, axis="y")
     ax.tick_params(axis="y", length=0)
     return axes
-
-
-def stage_name(stage: Mapping[str, Any], number: int) -> str:
-    """What a stage did, short enough for an axis: ``base model``, ``+ gravity``, ``− preload``."""
-    added, dropped = stage.get("added"), stage.get("dropped") or []
-    gone = [dropped] if isinstance(dropped, str) else list(dropped)
-    parts = ([f"+ {added}"] if added else []) + [f"− {name}" for name in gone]
-    text = "\n".join(parts) or ("base model" if number == 0 else "fitted again")
-    return text.replace("_", "_\n", 1) if len(text) > 14 else text
 
 
 def _column(ax: Axes, offset: float, title: str, texts: list[str]) -> None:

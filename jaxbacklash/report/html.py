@@ -121,10 +121,19 @@ def _picture(panel: Panel, anchor: str) -> Markup:
     found = re.match(r"<svg\b[^>]*>", text)
     if not found:
         raise ValueError(f"panel {panel.title!r}: figure_svg must be an <svg> element or a data:image address")
+    return Markup(own_ids(text, anchor, words))
+
+
+def own_ids(svg: str, anchor: str, words: str) -> str:
+    """An ``<svg>`` element that is described in words, already escaped, whose ids begin with an anchor that no other has."""
+    found = re.match(r"<svg\b[^>]*>", svg)
+    assert found is not None
     box = re.search(r'viewBox="([^"]*)"', found.group(0))
-    head = f'<svg role="img" aria-label="{words}"' + (f' viewBox="{escape(box.group(1))}">' if box else ">")
-    body = text[found.end() :].replace("xlink:href=", "href=")
+    # The drawing's own style sheet would hold for everything on the page; what it says is inherited as well.
+    look = 'style="stroke-linejoin: round; stroke-linecap: butt"'
+    head = f'<svg role="img" aria-label="{words}" {look}' + (f' viewBox="{escape(box.group(1))}">' if box else ">")
+    body = svg[found.end() :].replace("xlink:href=", "href=")
+    body = re.sub(r"<style\b.*?</style>", "", body, count=1, flags=re.DOTALL)
     body = re.sub(r'\bid="([^"]+)"', rf'id="{anchor}-\1"', body)
     body = re.sub(r'href="#([^"]+)"', rf'href="#{anchor}-\1"', body)
-    body = re.sub(r"url\(#([^)]+)\)", rf"url(#{anchor}-\1)", body)
-    return Markup(head + body)
+    return head + re.sub(r"url\(#([^)]+)\)", rf"url(#{anchor}-\1)", body)

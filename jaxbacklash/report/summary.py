@@ -7,8 +7,8 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from ..fitting import percent
-from ..plot.models import error_with, stage_name
 from ..plot.style import format_evidence, format_interval, is_number, short, with_unit
+from ..plot.words import error_with, stage_name
 from .chaos_tiles import chaos_tiles, chosen
 from .facts import (
     BASE,

@@ -27,6 +27,8 @@ from ..effects import Contact, GapSpring, LinearGravity
 from ..effects.damping import ContactDamping
 from ..errors import BadInput
 from ..excitation import Harmonic
+from ..frames import dataset
+from ..showing import Shown
 from ..system import System
 
 Tell = Callable[[str, float], None]
@@ -40,7 +42,7 @@ SCALES = (LinearGravity, GapSpring, ContactDamping)
 
 
 @dataclass(frozen=True, eq=False)
-class ExponentMap:
+class ExponentMap(Shown):
     """Exponents over amplitude / play, from several starts, and over other parameters where asked.
 
     ``ratios`` (R,) amplitude of the base over the total play, rising, evenly spaced in the logarithm; ``axes`` names and values
@@ -53,6 +55,21 @@ class ExponentMap:
     exponent: np.ndarray
     stderr: np.ndarray
     frequency: float
+
+    def __str__(self) -> str:
+        over = "".join(f", {values.size} of {name}" for name, values in self.axes.items())
+        return (
+            f"exponents per drive period at {self.frequency:g} Hz, {self.exponent.shape[0]} starts each: {self.ratios.size} "
+            f"ratios of amplitude to play from {self.ratios[0]:.3g} to {self.ratios[-1]:.3g}{over}"
+        )
+
+    def to_dataset(self) -> Any:
+        """The map as an `xarray.Dataset`: ``exponent``, ``stderr`` [1/drive period] over ``start``, other axes, and ``ratio``."""
+        dims = ("start", *self.axes, "ratio")
+        return dataset(
+            {"exponent": (dims, self.exponent, "1"), "stderr": (dims, self.stderr, "1")},
+            {**{name: (values, "") for name, values in self.axes.items()}, "ratio": (self.ratios, "1")}, frequency=self.frequency,
+        )  # fmt: skip
 
     @property
     def chaotic(self) -> np.ndarray:

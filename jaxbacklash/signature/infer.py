@@ -16,11 +16,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from ..errors import BadInput
+from ..frames import dataset
+from ..showing import Shown
 from .exponent_map import ExponentMap
 from .levels import Level
 
@@ -37,7 +40,7 @@ UNLIKELY = 0.02
 
 
 @dataclass(frozen=True, eq=False)
-class PlayFromChaos:
+class PlayFromChaos(Shown):
     """The play as exponents tell it. Prints itself. Plays are total plays in the unit of the amplitudes, rad.
 
     ``value`` posterior median and ``interval`` the 95 % interval with equal tails, both None with ``why`` where the levels do not
@@ -80,6 +83,17 @@ class PlayFromChaos:
                 "stiffness or gravity of the map may be off"
             )
         return "\n".join(lines)
+
+    def to_dataset(self) -> Any:
+        """What the levels say as an `xarray.Dataset` over the total ``play`` [rad].
+
+        It holds the posterior ``density`` for its logarithm, and the likelihood ``each`` of every level, by ``amplitude`` [rad].
+        """
+        return dataset(
+            {"density": ("play", self.density, "1"), "each": (("amplitude", "play"), self.each, "1")},
+            {"play": (self.plays, "rad"), "amplitude": ([level.amplitude for level in self.levels], "rad")},
+            bits=self.bits,
+        )  # fmt: skip
 
 
 def play_from_exponents(

@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadInput
+from ..frames import dataset
+from ..showing import Shown
 from .exponent_map import ExponentMap
 
 
 @dataclass(frozen=True, eq=False)
-class PatternMatch:
+class PatternMatch(Shown):
     """How a map matches a pattern, over its parameters and over plays.
 
     ``chance`` (..., B) probability that runs from starts drawn at random, one a level, show the pattern: 1 where every start
@@ -25,6 +27,17 @@ class PatternMatch:
     right: np.ndarray
     exponent: np.ndarray
     axes: dict[str, np.ndarray]
+
+    def __str__(self) -> str:
+        return f"the pattern appears from every start in {100.0 * self.share(1.0):.3g} % of the {self.chance.size} joints tried"
+
+    def to_dataset(self) -> Any:
+        """The match as an `xarray.Dataset` over all axes: ``chance`` of the pattern, and how many levels come out ``right``."""
+        dims = tuple(self.axes)
+        return dataset(
+            {"chance": (dims, self.chance, "1"), "right": (dims, self.right, "1")},
+            {name: (values, "") for name, values in self.axes.items()},
+        )
 
     def share(self, least: float = 0.5) -> float:
         """Share of the region that shows the pattern with at least this probability."""

@@ -9,13 +9,15 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadInput
+from ..frames import dataframe
+from ..showing import Shown
 from .exponent_map import ExponentMap
 from .infer import DRIVE_ERROR, FALSE_ALARM, MISSED, SYSTEMATIC, play_from_exponents
 from .levels import Level
 
 
 @dataclass(frozen=True, eq=False)
-class Worth:
+class Worth(Shown):
     """What would come out, over many imagined experiments.
 
     ``play`` (T,) true plays [rad]; ``low``, ``high`` (T,) ends of the 95 % interval, NaN where no play was determined; ``value``
@@ -52,6 +54,14 @@ class Worth:
             + (f"+- {100 * width[1]:.2g} % (80 % of them {100 * width[0]:.2g} to {100 * width[2]:.2g} %), " if some.any() else "")
             + f"intervals hold the truth in {100.0 * self.held.mean():.1f} %, {self.bits.mean():.1f} bit each"
         )
+
+    def to_dataframe(self) -> Any:
+        """The imagined experiments as a `pandas.DataFrame`, a row each.
+
+        Columns: the true ``play``, the ``value`` that came out, ``low`` and ``high`` of its interval [rad], its ``pieces``, and
+        the ``bits`` that were learned.
+        """
+        return dataframe({name: getattr(self, name) for name in ("play", "value", "low", "high", "pieces", "bits")})
 
 
 def worth(

@@ -19,13 +19,16 @@ weight, is not biased by that noise; a regression of H is.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy import optimize
 
 from ..errors import BadInput, NoAnswer
+from ..frames import dataframe, dataset
 from ..records import Record
-from .result import Value
+from ..showing import Shown
+from .result import Value, columns_of
 
 COHERENT = 0.8
 """Coherence that a line needs to count."""
@@ -33,7 +36,7 @@ FEWEST_LINES = 8
 
 
 @dataclass(frozen=True)
-class Response:
+class Response(Shown):
     """Receptance of the link. Arrays (F,): ``frequency`` [Hz]; ``h1``, ``h2`` complex [rad/(N m)]; ``coherence`` 0 to 1;
     ``used`` lines that the values come from. ``values``: natural_frequency [Hz], damping_ratio, inertia, stiffness, damping."""
 
@@ -48,6 +51,18 @@ class Response:
         lines = [f"{int(self.used.sum())} of {self.used.size} lines are coherent"]
         lines += [f"  {name.replace('_', ' '):<20} {v.value:.6g} +- {v.stderr:.2g} {v.unit}" for name, v in self.values.items()]
         return "\n".join(lines)
+
+    def to_dataframe(self) -> Any:
+        """The values as a `pandas.DataFrame`, a row each: ``value``, ``stderr``, ``low`` and ``high`` of the 95 % interval."""
+        return dataframe({"parameter": list(self.values), **columns_of(list(self.values.values()))}, "parameter")
+
+    def to_dataset(self) -> Any:
+        """The lines as an `xarray.Dataset` along ``frequency`` [Hz]: complex ``h1``, ``h2``, ``coherence``, and which count."""
+        unit = "m/N" if self.values["stiffness"].unit == "N/m" else "rad/(N m)"
+        lines = {"h1": (self.h1, unit), "h2": (self.h2, unit), "coherence": (self.coherence, "1"), "used": (self.used, "1")}
+        return dataset(
+            {name: ("frequency", values, of) for name, (values, of) in lines.items()}, {"frequency": (self.frequency, "Hz")}
+        )
 
 
 def frequency_response(

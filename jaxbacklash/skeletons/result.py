@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from ..frames import dataframe, known
 from ..records import Record
+from ..showing import Shown
 from .fundamental import Fundamental
 from .inversion import Inversion, Terms, invert
 from .masks import Mask
 
 NAMES = ("backlash", "stiffness", "damping")
 LABELS = {"backlash": "total play b", "stiffness": "contact stiffness k", "damping": "viscous damping c", "inertia": "inertia J"}
+INDEX = ("method", "parameter")
 METHODS = {"hilbert": "Hilbert transform", "wavelet": "wavelet ridge"}
 
 
@@ -44,7 +48,7 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Skeleton:
+class Skeleton(Shown):
     """One method's answer; arrays have one entry a point of the skeleton, shape (M,).
 
     Attributes
@@ -100,6 +104,20 @@ class Skeleton:
             return 1.0
         return float(1.0 - np.sum(np.gradient(self.t)[self.kept]) / (self.t[-1] - self.t[0]))
 
+    def __str__(self) -> str:
+        head = f"{METHODS[self.method]}: {100.0 * (1.0 - self.masked_fraction):.0f} % of the record counts"
+        return "\n".join([head, *(line(name, value) for name, value in self.parameters.items())])
+
+    def to_dataframe(self) -> Any:
+        """The skeleton as a `pandas.DataFrame` along ``t`` [s].
+
+        Columns: ``frequency`` [Hz], ``amplitude``, ``peak``, the modal ``stiffness`` [1/s^2] and ``damping`` [1/s], and which
+        points are ``kept``.
+        """
+        names = ("t", "frequency", "amplitude", "peak", "stiffness", "damping", "kept")
+        units = {"t": "s", "frequency": "Hz", "stiffness": "1/s^2", "damping": "1/s"}
+        return dataframe({name: getattr(self, name) for name in names}, "t", units=units)
+
     def inverted(self, way: str = "waveform", inertia: float | None = None) -> Inversion | None:
         """Half play, stiffness and damping from the kept points once more, by another describing function of the dead zone.
 
@@ -130,8 +148,8 @@ class Skeleton:
 
 
 @dataclass(frozen=True)
-class Skeletons:
-    """Both methods on one record, see `skeleton`."""
+class Skeletons(Shown):
+    """Both methods on one record, see `skeleton`. Prints itself; in a notebook it shows a table and its picture."""
 
     record: Record
     hilbert: Skeleton
@@ -153,6 +171,26 @@ class Skeletons:
 
     def __str__(self) -> str:
         return text(self)
+
+    def to_dataframe(self) -> Any:
+        """The parameters as a `pandas.DataFrame`, a row for each ``method`` and ``parameter``.
+
+        Columns: ``value``, ``stderr``, ``low`` and ``high`` of the 95 % interval in ``unit``; NaN, with a ``why``, where there is
+        no number.
+        """
+        rows = [(method.method, name, value) for method in self.methods for name, value in method.parameters.items()]
+        return dataframe({"method": [row[0] for row in rows], "parameter": [row[1] for row in rows],
+                          **columns_of([row[2] for row in rows])}, INDEX)  # fmt: skip
+
+
+def columns_of(values: Sequence[Value]) -> dict[str, Any]:
+    """Values as columns of a table."""
+    return {
+        "value": known([one.value for one in values]), "stderr": known([one.stderr for one in values]),
+        "low": known([None if one.ci95 is None else one.ci95[0] for one in values]),
+        "high": known([None if one.ci95 is None else one.ci95[1] for one in values]),
+        "unit": [one.unit for one in values], "why": [one.why for one in values],
+    }  # fmt: skip
 
 
 def text(found: Skeletons) -> str:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from ..frames import dataframe, dataset, known
+from ..showing import Shown
 from .correlation import Correlation
 from .dimension import Dimension
 from .drift import Drift
@@ -21,8 +24,8 @@ from .zero_one import ZeroOne
 
 
 @dataclass(frozen=True, eq=False)
-class ChaosReport:
-    """What one series says. Prints itself.
+class ChaosReport(Shown):
+    """What one series says. Prints itself; in a notebook it shows a table and its picture (`jaxbacklash.plot.chaos`).
 
     Exponents are per sample inside ``exponent`` and ``raw_exponent``; the properties give them per second. ``series`` is the
     standardised series, ``cleaned`` its noise reduction (of the middle of a long series, see `clean_series`), which counts only
@@ -80,6 +83,60 @@ class ChaosReport:
 
     def __str__(self) -> str:
         return text(self)
+
+    def numbers(self) -> list[tuple[str, float | None, tuple[float, float] | None, str, str]]:
+        """What was found: name, value, 95 % interval, unit, and why there is none."""
+        per = None if self.lyapunov is None or self.drive_period is None else self.lyapunov * self.drive_period
+        bits = None if self.lyapunov is None else self.lyapunov / math.log(2.0)
+        of = self.correlation
+        return [
+            ("lyapunov", self.lyapunov, self.interval, "1/s", self.why_no_number or ""),
+            ("lyapunov_bits", bits, None, "bit/s", self.why_no_number or ""),
+            ("lyapunov_per_period", per, None, "1", self.why_no_number or self.why_no_period or ""),
+            ("delay", self.delay.samples * self.dt, None, "s", ""),
+            ("dimension", self.raw_dimension.cao, None, "1", "" if self.raw_dimension.cao else "Cao's E1 does not settle"),
+            ("correlation_dimension", of.dimension, None, "1", "" if of.dimension is not None else of.why),
+            ("p_value", self.surrogates.p_value, None, "1", ""),
+            ("zero_one", self.walk.k, None, "1", ""),
+        ]
+
+    def to_dataframe(self) -> Any:
+        """What was found as a `pandas.DataFrame`, a row for each ``quantity``.
+
+        Columns: ``value``, ``low`` and ``high`` of the 95 % interval in ``unit``; NaN, with a ``why``, where there is no number.
+        """
+        rows = self.numbers()
+        return dataframe(
+            {
+                "quantity": [row[0] for row in rows], "value": known([row[1] for row in rows]),
+                "low": known([None if row[2] is None else row[2][0] for row in rows]),
+                "high": known([None if row[2] is None else row[2][1] for row in rows]),
+                "unit": [row[3] for row in rows], "why": [row[4] for row in rows],
+            },
+            "quantity", verdict=self.verdict.word,
+        )  # fmt: skip
+
+    def to_dataset(self) -> Any:
+        """The curves behind the verdict as an `xarray.Dataset`.
+
+        Stretching curves stand along ``lag`` [s], ``information`` along ``delay`` [s], Cao's ``e1`` and ``e2`` and the
+        ``false_share`` of neighbours along ``dimension``, correlation ``sums`` over ``embedding`` and ``radius`` [standard
+        deviations], and prediction errors of the ``surrogates``.
+        """
+        curve, delay, raw, of, dt = self.curve, self.delay, self.raw_dimension, self.correlation, self.dt
+        return dataset(
+            {
+                **{name: ("lag", getattr(curve, name), "1") for name in ("kantz", "smooth", "rosenstein")},
+                "information": ("delay", delay.information, "nat"), "e1": ("dimension", raw.e1, "1"),
+                "e2": ("dimension", raw.e2, "1"), "false_share": ("dimension", raw.false_share, "1"),
+                "sums": (("embedding", "radius"), of.sums, "1"), "surrogates": ("surrogate", self.surrogates.surrogates, "1"),
+            },
+            {
+                "lag": (dt * curve.lags, "s"), "delay": (dt * delay.lags, "s"), "dimension": (raw.dimensions, "1"),
+                "embedding": (of.dimensions, "1"), "radius": (of.radii, "1"),
+            },
+            verdict=self.verdict.word,
+        )  # fmt: skip
 
 
 def text(found: ChaosReport) -> str:
