@@ -131,6 +131,16 @@ def test_a_wrong_model_gets_wide_intervals_and_says_so():
     assert found.parameters["backlash"].stderr > 5.0 * right.parameters["backlash"].stderr
 
 
+@pytest.mark.slow
+def test_a_contact_between_the_samples_of_a_link_that_is_not_seen():
+    """A force that turns round within a sample asks for a contact as hard; of a link's travel in it nothing was measured."""
+    t = np.arange(0.0, 4.0, 0.004)
+    x = 0.02 * np.sin(2.0 * np.pi * t)
+    force = -30.0 * np.tanh(400.0 * np.gradient(x, t)) + 0.3 * np.random.default_rng(0).standard_normal(t.size)
+    found = jb.fit(jb.Record(t, {"x": x, "T": force}), inertia=0.5, effects=["coulomb_ground"], starts=1)
+    assert found.parameters["coulomb_ground.Tc"].value == pytest.approx(30.0, rel=0.05)
+
+
 def test_a_link_that_is_not_seen_has_no_new_start_in_every_window():
     record = record_of()
     system, names, _ = base_system(record, "joint", None)  # without the friction that holds the link

@@ -126,7 +126,7 @@ def fit(
         fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational, covariance=covariance,
         explained=explains(scored, fitted),
     )  # fmt: skip
-    if contact_samples(fitted, chosen[0].dt) < SHORTEST:
+    if not is_held(system) and contact_samples(fitted, chosen[0].dt) < SHORTEST:
         estimates |= _between_samples(estimates, fitted, chosen, missed=scored[0].rms > EXPLAINED)
     if profile:
         estimates = with_profiles(problem, unknowns, estimates, names, stderr, progress)
