@@ -172,7 +172,13 @@ def canonical_name(effect: AbstractEffect | type[AbstractEffect]) -> str:
 
 
 def catalogue() -> dict[str, type[AbstractEffect]]:
-    """Every law known so far by canonical name, a user's own classes included; nothing else is registered."""
+    """Every law known so far by canonical name, a user's own classes included; nothing else is registered.
+
+    Examples
+    --------
+    >>> [name for name in jb.catalogue() if "friction" in (jb.catalogue()[name].__doc__ or "")]
+    ['coulomb_ground', ...]
+    """
     found: dict[str, type[AbstractEffect]] = {}
     queue: list[Any] = list(AbstractEffect.__subclasses__())
     while queue:

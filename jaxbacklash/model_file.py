@@ -36,6 +36,16 @@ def dump_model(
     `jaxbacklash.records.force.BETWEEN`, for `simulate` to do the same; None: there was no force.
     ``known_noise`` tells `compare` what the fit has found of the noise, where that is below what the samples alone said: by which
     factor, and its standard deviation.
+
+    Examples
+    --------
+    >>> joint = jb.base_motion_joint(inertia=3.16, backlash=0.026, stiffness=15000.0, damping=20.0)
+    >>> print(jb.dump_model(joint))
+    [model]
+    observed = "z"
+    inertia = 3.16  # kg m^2
+    backlash = 0.026  # rad
+    ...
     """
 
     def entry(name: str, value: Any, unit: str) -> str:
@@ -67,10 +77,25 @@ def dump_model(
 def load_model(path: str | Path) -> System:
     """Read a model file.
 
+    Returns
+    -------
+    the system, ready for `compare` and `simulate`
+
     Raises
     ------
     BadInput
         A file that is missing or not TOML, an unknown or missing entry, a value that is no number or out of bounds.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import mkdtemp
+    >>> file = Path(mkdtemp()) / "model.toml"
+    >>> joint = jb.base_motion_joint(inertia=3.16, backlash=0.026, stiffness=15000.0, damping=20.0)
+    >>> file.write_text(jb.dump_model(joint)) > 0
+    True
+    >>> float(jb.load_model(file).contact.stiffness)
+    15000.0
     """
     data, where = _read(path)
     return _build(data, where)

@@ -16,6 +16,12 @@ def base_motion_joint(
 
     inertia [kg m^2], backlash the total play [rad], stiffness [N m/rad], damping [N m s/rad], width of the smoothed
     corner [rad].
+
+    Examples
+    --------
+    >>> joint = jb.base_motion_joint(inertia=3.16, backlash=0.026, stiffness=15000.0, damping=20.0)
+    >>> [round(float(edge), 3) for edge in joint.edges(0.0)]
+    [-0.013, 0.013]
     """
     return System(inertia, Contact(backlash, stiffness, width), Damper(damping))
 
@@ -26,6 +32,11 @@ def two_link(
     r"""The second link of a two-link mechanism under its weight (paper, 3.3-3.4).
 
     ``gravity`` is G = m g L = J C [N m], positive upright; with ``linearised`` the torque is G y, else G sin y.
+
+    Examples
+    --------
+    >>> sorted(jb.two_link(3.16, 0.026, 15000.0, 20.0, gravity=-45.0).effects)
+    ['gravity']
     """
     weight = LinearGravity(gravity) if linearised else Gravity(gravity)
     return base_motion_joint(inertia, backlash, stiffness, damping).with_effects(weight)
@@ -47,18 +58,37 @@ def forced_oscillator(
     r"""The force-driven oscillator of Table 1: :math:`m\ddot x + c\dot x + k_1 x + k_0\delta(x) = A\cos\omega t` (2.13).
 
     ``half_play`` is the paper's x_0 [m], half of the total play that `Contact` holds.
+
+    Examples
+    --------
+    >>> jb.forced_oscillator(mass=1.0, k0=40000.0, damping=8.0, half_play=0.005).observed
+    'y'
     """
     system = System(mass, Contact(2.0 * half_play, k0, width), Damper(damping), observed="y")
     return system.with_effects(GapSpring(k1, 0.0)) if k1 else system
 
 
 def case_1() -> tuple[System, Harmonic]:
-    """CASE 1 of Table 1 with its force: 100 N at 40 rad/s."""
+    """CASE 1 of Table 1 with its force: 100 N at 40 rad/s.
+
+    Examples
+    --------
+    >>> system, force = jb.case_1()
+    >>> float(force.amplitude), float(force.omega)
+    (100.0, 40.0)
+    """
     return forced_oscillator(1.0, 40000.0, 8.0, 0.005), Harmonic(100.0, 40.0, as_force=True)
 
 
 def case_2() -> tuple[System, Harmonic]:
-    """CASE 2 of Table 1 with its force: 240 N at 40 rad/s."""
+    """CASE 2 of Table 1 with its force: 240 N at 40 rad/s.
+
+    Examples
+    --------
+    >>> system, force = jb.case_2()
+    >>> sorted(system.effects)
+    ['gap_spring']
+    """
     return forced_oscillator(1.0, 31000.0, 8.0, 0.005, k1=1000.0), Harmonic(240.0, 40.0, as_force=True)
 
 
@@ -81,7 +111,14 @@ class Dimensionless(NamedTuple):
 
 
 def dimensionless(system: System, force: Harmonic) -> Dimensionless:
-    """The dimensionless form of a force-driven oscillator with play (2.14)."""
+    """The dimensionless form of a force-driven oscillator with play (2.14).
+
+    Examples
+    --------
+    >>> found = jb.dimensionless(*jb.case_1())
+    >>> round(found.zeta, 3), round(found.alpha, 3), round(found.Omega, 3)
+    (0.02, 0.5, 0.2)
+    """
     if not isinstance(system.contact, Contact):
         raise ValueError("the dimensionless form measures lengths in half plays: the system needs a play")
     mass, k0 = float(system.inertia), float(system.contact.stiffness)

@@ -53,6 +53,16 @@ def param(*, default: float | None = None, required: bool = False, **spec: Any) 
 
     Without a ``default`` the null value is taken, else the lower bound, else zero, so that a law can be built before its
     values are known; ``required`` parameters must be given.
+
+    Examples
+    --------
+    >>> class Tide(jb.AbstractEffect):
+    ...     amplitude: float = jb.param(unit="N m", null=0.0)
+    ...
+    ...     def torque(self, now):
+    ...         return self.amplitude * jnp.sin(now.t)
+    >>> float(Tide(2.0).amplitude), float(Tide().amplitude)
+    (2.0, 0.0)
     """
     described = Spec(**spec)
     keywords: dict[str, Any] = {"metadata": {"spec": described}, "converter": _scalar}

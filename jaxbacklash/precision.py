@@ -6,7 +6,12 @@ import jax
 
 
 def enable_double_precision() -> None:
-    """Switch JAX to float64. Programs call it where they start; importing jaxbacklash does not."""
+    """Switch JAX to float64. Programs call it where they start; importing jaxbacklash does not.
+
+    Examples
+    --------
+    >>> jb.enable_double_precision()
+    """
     jax.config.update("jax_enable_x64", True)
 
 

@@ -76,6 +76,11 @@ def start(*, cache: bool = True, devices: int | None = None, brief: bool = False
     devices : CPU devices that share a fit's windows; default one a core, at most `MOST_CORES`
     brief : the program computes little and ends, like most commands: compile faster, even if what is compiled is slower, but
         for what is known to compute much (`jaxbacklash.compiled.kept_jit`)
+
+    Examples
+    --------
+    >>> import jaxbacklash as jb
+    >>> jb.start()  # doctest: +SKIP
     """
     # Read when NumPy and SciPy load, which is no later than JAX.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

@@ -69,7 +69,18 @@ class CrossCheck(Shown):
 
 
 def cross_check(fit: Fit) -> CrossCheck:
-    """Set the Hilbert and wavelet skeletons of the fit's first record beside it. Never raises for a record it cannot use."""
+    """Set the Hilbert and wavelet skeletons of the fit's first record beside it. Never raises for a record it cannot use.
+
+    Returns
+    -------
+    `CrossCheck`: prints a sentence; ``agrees`` is None where no method could judge
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> print(jb.cross_check(jb.fit(record, inertia=3.16, effects=["gravity"], starts=1)))
+    Hilbert transform and wavelet...
+    """
     record = fit.records[0]
     if record.kind == "transmitted":
         return beside_loop(fit)

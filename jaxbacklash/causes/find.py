@@ -61,11 +61,17 @@ def find_causes(fit: Fit, progress: Callable[[str, float], None] = silent) -> li
     fit : a fit, as `jaxbacklash.fit` returns it
     progress : told the stage in words and the share of the work done
 
-    Example
+    Returns
     -------
-    >>> for cause in find_causes(jb.fit(record, inertia=3.2)):
+    a `Cause` or none; it prints a sentence, and ``remedy`` is what to add to a command
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> late = record.replace(z=np.interp(record.t - 0.004, record.t, record.channels["z"])).between(0.0, 6.0)
+    >>> for cause in jb.find_causes(jb.fit(late, inertia=3.16, effects=["gravity"], starts=1)):
     ...     print(cause.sentence)
-    z is late by 4.00 +- 0.02 ms against x: with that the model misses 1.01 times the noise instead of 4.93
+    z is late by ... ms against x: with that the model misses ... times the noise instead of ...
     """
     if fit.problem is None or fit.unknowns is None or not beyond_chance(fit) or fit.records[0].kind == "transmitted":
         return []

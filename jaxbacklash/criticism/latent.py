@@ -134,10 +134,21 @@ def missing_torque(fit: Fit, *, hold: bool = False) -> Latent:
     fit : a fit
     hold : keep the parameters as fitted, instead of estimating them anew beside the torque
 
+    Returns
+    -------
+    `Latent`: ``t``, ``torque`` and its ``stderr``, (N,) each; prints how large it is
+
     Raises
     ------
     NoAnswer
         The smoother does not reach a finite misfit, or the model's own parameters leave the torque open.
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> fit = jb.fit(record.between(0.0, 2.0), inertia=3.16, starts=1)
+    >>> print(jb.missing_torque(fit))
+    A torque of ... N m rms is missing, known to ...
     """
     if fit.problem is None or fit.unknowns is None:
         return missing_torque_of(

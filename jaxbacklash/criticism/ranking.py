@@ -111,10 +111,22 @@ def rank_effects(fit: Fit, *, window: float | None = None) -> Ranking:
     fit : a fit
     window : length of the windows whose error is quoted, as in the fit [s]
 
+    Returns
+    -------
+    `Ranking`: prints itself; iterates over the absent effects, best first, each with ``name``, ``rms_over_noise`` and
+    ``evidence``
+
     Raises
     ------
     RuntimeError
         JAX is in single precision.
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> fit = jb.fit(record.between(0.0, 6.0), inertia=3.16, starts=1)
+    >>> jb.rank_effects(fit)[0].name
+    'gravity'
     """
     require_double_precision("rank_effects")
     full = fit.system

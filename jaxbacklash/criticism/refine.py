@@ -75,12 +75,23 @@ def refine(
     settled : told a model that leaves but noise as soon as it is scored, while the search still looks for more, and at last the
         model kept, unless that was the last it was told; that once more, if others do as well, with intervals that allow for them
 
+    Returns
+    -------
+    `Refinement`: prints itself; ``effects`` that were missing, ``alternatives``, ``verdict``, and ``fit``, the model kept
+
     Raises
     ------
     BadInput
         Records that cannot carry the model.
     RuntimeError
         JAX is in single precision.
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> found = jb.refine(record, heldout=heldout, inertia=3.16)
+    >>> found.effects, found.verdict.word
+    (('gravity',), 'complete')
     """
     require_double_precision("refine")
     record = oriented(record)

@@ -90,10 +90,22 @@ def where_it_fails(fit: Fit, latent: Latent | None = None, surface: Surface | No
     fit : a fit
     latent, surface : the missing torque and its best coordinates, where they are known already
 
+    Returns
+    -------
+    `Findings`: prints its sentences; ``surface`` is what the missing torque depends on
+
     Raises
     ------
     NoAnswer
         The missing torque cannot be found.
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> fit = jb.fit(record.between(0.0, 2.0), inertia=3.16, starts=1)
+    >>> found = jb.where_it_fails(fit)
+    >>> found.adequate, found.surface.coordinates
+    (False, ('y',))
     """
     seen = fit.records[0].kind == "transmitted"
     if latent is None:

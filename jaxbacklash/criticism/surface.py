@@ -98,6 +98,20 @@ def explain_torque(latent: Latent, sets: tuple[tuple[str, ...], ...] = SETS) -> 
     ----------
     latent : the missing torque
     sets : sets of one or two coordinates to try
+
+    Returns
+    -------
+    `Surface`: the coordinates, a table over them, and the share that it explains
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> fit = jb.fit(record.between(0.0, 2.0), inertia=3.16, starts=1)
+    >>> found = jb.explain_torque(jb.missing_torque(fit))
+    >>> found.coordinates
+    ('y',)
+    >>> print(found)
+    A torque that depends on the absolute angle y alone explains ... % of it.
     """
     inside = latent.inside
     smoother, point = inside.smoother, inside.point

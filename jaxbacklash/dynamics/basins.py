@@ -93,6 +93,13 @@ def basins(
     Returns
     -------
     Basins, the attractor with the largest share first
+
+    Examples
+    --------
+    >>> case = jb.dynamics.PaperCase(1)
+    >>> found = jb.dynamics.basins(case, {"inverse_alpha": 3.0}, [-1.0, 0.0, 1.0], [-1.0, 0.0, 1.0], periods=120)
+    >>> found.number.shape
+    (3, 3)
     """
     y, dy = np.asarray(y, dtype=float), np.asarray(dy, dtype=float)
     grid = np.meshgrid(y, dy, indexing="ij")

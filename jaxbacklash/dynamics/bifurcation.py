@@ -57,6 +57,13 @@ def bifurcation(
     ------
     BadInput
         Unknown parameter, values that do not rise, or a drive that does not repeat, which no sweep can go on under.
+
+    Examples
+    --------
+    >>> case = jb.dynamics.PaperCase(1)
+    >>> found = jb.dynamics.bifurcation(case, "inverse_alpha", [3.8, 4.2], settle=10, samples=8, start_periods=20)
+    >>> found.swept_up.dims
+    ('sample', 'inverse_alpha')
     """
     require_double_precision("a bifurcation diagram")
     xarray = need_xarray()

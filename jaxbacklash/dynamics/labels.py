@@ -132,6 +132,16 @@ def write_netcdf(map_: Any, path: str | os.PathLike[str]) -> None:
     ------
     BadInput
         h5netcdf is missing or the file cannot be written.
+
+    Examples
+    --------
+    >>> from pathlib import Path
+    >>> from tempfile import mkdtemp
+    >>> found = jb.dynamics.paper_map(1, {"inverse_alpha": [1.5, 2.0, 3.0], "zeta": [0.02, 0.03]}, periods=60, skip=20)
+    >>> file = Path(mkdtemp()) / "case1.nc"
+    >>> jb.dynamics.write_netcdf(found, file)
+    >>> file.stat().st_size > 1000
+    True
     """
     h5netcdf = need_h5netcdf()
     target = Path(path)

@@ -90,6 +90,10 @@ def lyapunov_spectrum(
     panels : located panels in a stretch; default: at least 128, and 40 in a period of the contact resonance
     exact : False forbids the exact steps, which are taken wherever the system allows them and no panels are given
 
+    Returns
+    -------
+    `Exponents`: ``values``, largest first, and their ``stderr``; prints itself
+
     Raises
     ------
     NoAnswer
@@ -98,6 +102,13 @@ def lyapunov_spectrum(
         The drive has no period and none is given.
     BadInput
         A measured drive ends before the run does.
+
+    Examples
+    --------
+    >>> system, force = jb.dynamics.PaperCase(1).build({})
+    >>> found = jb.dynamics.lyapunov_spectrum(system, force, periods=60, skip=20)
+    >>> round(float(found.values.sum()), 6)  # minus twice the damping ratio
+    -0.04
     """
     require_double_precision("a Lyapunov spectrum")
     drive = Rest() if drive is None else drive
@@ -185,6 +196,17 @@ def field_spectrum(
     step : length of a step
     stretches, skip, steps : stretches of so many steps each between two orthogonalisations; the first ``skip`` are transient
     count : how many exponents; default all n
+
+    Returns
+    -------
+    `Exponents`
+
+    Examples
+    --------
+    >>> def decay(t, q):
+    ...     return -0.5 * q
+    >>> jb.dynamics.field_spectrum(decay, [1.0], step=0.01, stretches=60, skip=20).values.round(6)
+    array([-0.5])
     """
     require_double_precision("a Lyapunov spectrum")
     state = jnp.asarray(start, dtype=float)

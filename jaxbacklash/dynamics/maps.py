@@ -70,6 +70,13 @@ def run_map(
     ------
     BadInput
         xarray (or zarr, for a store) is missing, or the store holds another map.
+
+    Examples
+    --------
+    >>> family = jb.dynamics.PaperCase(1)
+    >>> wanted = jb.dynamics.request(family, {"inverse_alpha": [1.5, 2.0, 3.0]}, periods=60, skip=20)
+    >>> jb.dynamics.run_map(wanted).lyapunov.sizes["inverse_alpha"]
+    3
     """
     return dataset(labelled_map(wanted, store=store, client=client, workers=workers, progress=progress))
 
@@ -141,7 +148,14 @@ def _words(seconds: float) -> str:
 
 
 def paper_map(case: int, axes: Mapping[str, Any], **options: Any) -> Any:
-    """`run_map` of a case of the paper over ``inverse_alpha``, ``zeta`` and ``Omega``; options of `request` and `run_map`."""
+    """`run_map` of a case of the paper over ``inverse_alpha``, ``zeta`` and ``Omega``; options of `request` and `run_map`.
+
+    Examples
+    --------
+    >>> axes = {"inverse_alpha": [1.5, 2.0, 3.0], "zeta": [0.02, 0.03]}
+    >>> jb.dynamics.paper_map(1, axes, periods=60, skip=20).lyapunov.shape
+    (3, 2)
+    """
     later = {name: options.pop(name) for name in ("store", "client", "workers", "progress") if name in options}
     if case not in (1, 2):
         raise BadInput(f"case {case}: wanted 1 or 2")

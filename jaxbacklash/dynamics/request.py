@@ -80,10 +80,21 @@ def request(
     ``exact``, ``period`` [s] and ``panels`` are those of `follow`: a drive without a period of its own, a chirp or a measured
     base motion, needs ``period``, the time between two samples.
 
+    Returns
+    -------
+    what `run_map` computes
+
     Raises
     ------
     BadInput
         An unknown parameter, an axis without finite values, or a plan that cannot be followed.
+
+    Examples
+    --------
+    >>> joint = jb.base_motion_joint(inertia=3.16, backlash=0.026, stiffness=11000.0, damping=20.0)
+    >>> family = jb.dynamics.NamedParameters(joint, jb.Harmonic(0.05, 9.7))
+    >>> jb.dynamics.request(family, {"drive.amplitude": [0.03, 0.05], "damping": [10.0, 20.0]}).names
+    ['drive.amplitude', 'damping']
     """
     if not axes:
         raise BadInput("a map needs at least one axis")

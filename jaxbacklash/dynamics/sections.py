@@ -45,10 +45,20 @@ def stroboscopic(
 
     Exact steps are taken where the system allows them. ``period`` [s] must be given for a drive that has none of its own.
 
+    Returns
+    -------
+    `Section`: ``t``, ``z`` and ``dz``, (points,) each
+
     Raises
     ------
     BadInput
         The drive has no period and none is given.
+
+    Examples
+    --------
+    >>> system, force = jb.dynamics.PaperCase(1).build({})
+    >>> jb.dynamics.stroboscopic(system, force, points=20).z.shape
+    (20,)
     """
     plan = Plan(skip + max(points, 20), skip, points)
     one = jnp.ones(1)
@@ -76,6 +86,13 @@ def poincare(
     -------
     Section
         times from the cubic through positions and speeds of the neighbouring samples
+
+    Examples
+    --------
+    >>> system, force = jb.dynamics.PaperCase(1).build({})
+    >>> found = jb.dynamics.poincare(system, force, plane=1.0, direction=1, duration=200.0, rate=20.0)
+    >>> bool((found.dz > 0.0).all())
+    True
     """
     return crossings(simulate(system, drive, duration=duration, rate=rate, y0=y0, dy0=dy0), plane, direction, skip)
 

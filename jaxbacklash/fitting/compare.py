@@ -64,12 +64,26 @@ def compare(
     ``known`` is what the fit of the model has told of the noise: by which factor it was below what the samples alone said, and
     its standard deviation (`Fit.known_noise`, in a model file ``[noise]``).
 
+    Returns
+    -------
+    `Comparison`: prints itself; ``score.rms`` is the error over the noise, ``adequate`` whether noise would leave as much
+
     Raises
     ------
     BadInput
         The record does not hold the channel that the model observes.
     NoAnswer
         The model's motion grows without bound.
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> fit = jb.fit(record.between(0.0, 2.0), inertia=3.16, starts=1)
+    >>> found = jb.compare(fit.system, heldout.between(0.0, 2.0))
+    >>> found.adequate
+    False
+    >>> print(found.sentence())
+    The model misses this record by ... times the noise, ...; the worst window begins at ... s.
     """
     if record.observed_name != system.observed:
         if {record.observed_name, system.observed} == {"z", "y"}:

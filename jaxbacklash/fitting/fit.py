@@ -53,7 +53,7 @@ def fit(
     profile: bool = False,
     progress: Callable[[str, float], None] = silent,
 ) -> Fit:
-    """Fit a model to one or more records.
+    """Fit a model to one or more records: play, stiffness and damping, with what else is asked for, and how well it predicts.
 
     Parameters
     ----------
@@ -71,6 +71,22 @@ def fit(
     profile : intervals from the profile likelihood instead of the curvature at the minimum
     progress : told the stage in words and the share of the work done
 
+    Returns
+    -------
+    Fit
+        It prints itself, and shows a table and a picture in a notebook. What a program reads:
+
+        * ``parameters["backlash"]``, by name, are `Estimate`: ``value``, ``stderr`` and ``ci95`` in ``unit``. ``value`` is None,
+          with ``why``, where the record does not determine it. ``backlash`` is the total play.
+        * ``score.rms`` is the prediction error over the noise, 1.00 where noise alone is left; ``score.median`` that of the
+          median window; ``score.t``, ``measured``, ``predicted`` and ``residual`` (N,) are the record beside the model.
+        * ``heldout.rms`` is the same on the held-out record, ``heldout`` None without one.
+        * ``adequate`` tells whether noise would leave as much: if it does not, something is missing (`where_it_fails`,
+          `rank_effects`, `refine`), and standard errors hold only if the model were right.
+        * ``system`` is the fitted model, for `compare`, `simulate` and `dump_model`; ``noise`` what the sensors add, per record.
+        * ``to_dataframe()`` and ``to_dataset()`` are parameters and record as pandas and xarray have them; ``jb.plot.fit(fit)``,
+          ``jb.plot.residuals(fit)`` and ``jb.plot.restoring_force(fit)`` its pictures.
+
     Raises
     ------
     BadInput
@@ -79,6 +95,16 @@ def fit(
         No start led to a finite minimum.
     RuntimeError
         JAX is in single precision.
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> fit = jb.fit(record, inertia=3.16, effects=["gravity"], heldout=heldout, starts=1)
+    >>> play = fit.parameters["backlash"]
+    >>> round(play.value, 4), play.unit, bool(play.stderr < 1e-5)
+    (0.0262, 'rad', True)
+    >>> fit.adequate, round(fit.score.rms, 1), round(fit.heldout.rms, 1)
+    (True, 1.0, 1.0)
     """
     require_double_precision("fit")
     chosen = tuple(oriented(r) for r in ((records,) if isinstance(records, Record) else records))
@@ -218,6 +244,18 @@ def predict_record(
     ``free`` only sets how many directions the problem carries, so that the program compiled for a fit serves again.
     ``known`` is what a fit to another record of the joint has told of the noise: by which factor it was below what the samples
     alone said, and its standard deviation.
+
+    Returns
+    -------
+    `Score`: its ``rms`` is the error of all windows over the noise, ``predicted`` (N,) the prediction
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> fit = jb.fit(record.between(0.0, 2.0), inertia=3.16, starts=1)
+    >>> score = jb.predict_record(fit.system, heldout.between(0.0, 2.0))
+    >>> score.predicted.shape
+    (1001,)
     """
     return predict_with_noise(system, record, window=window, free=free, known=known)[0]
 

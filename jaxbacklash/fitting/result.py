@@ -101,8 +101,11 @@ class Fit(Shown):
 
         Examples
         --------
-        >>> fit.to_dataframe().loc["backlash", ["value", "unit"]].to_list()
-        [0.0257..., 'rad']
+        >>> record, heldout = jb.demo_records()
+        >>> fit = jb.fit(record.between(0.0, 2.0), inertia=3.16, starts=1)
+        >>> frame = fit.to_dataframe()
+        >>> list(frame.index), frame.loc["backlash", "unit"]
+        (['backlash', 'stiffness', 'damping'], 'rad')
         """
         found, open_ = self.parameters.values(), doubt(self)
         ends = [None if open_ else one.ci95 for one in found]

@@ -71,6 +71,8 @@ class Score(Shown, eqx.Module):
 
         Examples
         --------
+        >>> record, heldout = jb.demo_records()
+        >>> fit = jb.fit(record.between(0.0, 2.0), inertia=3.16, starts=1)
         >>> seen = fit.score.to_dataset("rad")
         >>> seen.sizes["t"], seen.measured.attrs["units"]
         (1001, 'rad')

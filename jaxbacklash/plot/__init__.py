@@ -4,7 +4,7 @@ Every function draws one picture, of one panel or several, and takes as ``ax`` w
 matplotlib figure, or part of one, is laid out with all panels; one axes takes the most telling panel alone; as many axes as there
 are panels take one each. What comes back is what was drawn on: the axes, or an array of them.
 
->>> record, _ = jb.demo_records()
+>>> record, heldout = jb.demo_records()
 >>> figure, (above, below) = plt.subplots(2)
 >>> axes = jb.plot.record(record, ax=[above, below])
 >>> [one.get_ylabel() for one in axes]

@@ -27,6 +27,15 @@ def chaos(found: ChaosReport, unit: str = "", *, ax: Where = None) -> list[Axes]
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> x = [0.3]
+    >>> for _ in range(999):
+    ...     x.append(3.9 * x[-1] * (1.0 - x[-1]))
+    >>> found = jb.chaos(np.array(x), 0.01, clean=False)
+    >>> len(jb.plot.chaos(found))
+    4
     """
     axes = panels(ax, mosaic="sp;uw", height=TALL)
     stretching(found, ax=axes[0])
@@ -50,6 +59,15 @@ def attractor(found: ChaosReport, unit: str = "", *, ax: Where = None) -> list[A
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> x = [0.3]
+    >>> for _ in range(999):
+    ...     x.append(3.9 * x[-1] * (1.0 - x[-1]))
+    >>> found = jb.chaos(np.array(x), 0.01, clean=False)
+    >>> jb.plot.attractor(found).get_ylabel()
+    '1 samples later'
     """
     both = [("as measured", found.series, MEASURED)]
     if found.cleaned is not None:
@@ -82,6 +100,15 @@ def stretching(found: ChaosReport, *, ax: Where = None) -> list[Axes]:
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> x = [0.3]
+    >>> for _ in range(999):
+    ...     x.append(3.9 * x[-1] * (1.0 - x[-1]))
+    >>> found = jb.chaos(np.array(x), 0.01, clean=False)
+    >>> jb.plot.stretching(found).get_ylabel()
+    'mean log distance'
     """
     curve, dt = found.curve, found.dt
     axes = panels(ax, height=MEDIUM)
@@ -121,6 +148,16 @@ def surrogates(found: ChaosReport, *, ax: Where = None) -> list[Axes]:
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> x = [0.3]
+    >>> for _ in range(999):
+    ...     x.append(3.9 * x[-1] * (1.0 - x[-1]))
+    >>> found = jb.chaos(np.array(x), 0.01, clean=False)
+    >>> errors, walk = jb.plot.surrogates(found)
+    >>> walk.get_title(loc="left")
+    '0-1 test: K = ...'
     """
     axes = panels(ax, 1, 2, height=SHORT + 0.4, width_ratios=(1.5, 1))
     left = axes[0]
@@ -156,6 +193,16 @@ def driven_growth(found: ChaosReport, name: str = "z", unit: str = "", *, ax: Wh
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> x = [0.3]
+    >>> for _ in range(999):
+    ...     x.append(3.9 * x[-1] * (1.0 - x[-1]))
+    >>> found = jb.chaos(np.array(x), 0.01, clean=False)
+    >>> ax = jb.plot.driven_growth(found)  # nothing was measured that drives it
+    >>> ax.texts[0].get_text()
+    'No law of motion was found.'
     """
     one, dt = found.driven, found.dt
     if one is None or one.surface is None:

@@ -32,6 +32,16 @@ def series(found: ChaosReport, name: str = "series", unit: str = "", *, ax: Wher
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> x = [0.3]
+    >>> for _ in range(999):
+    ...     x.append(3.9 * x[-1] * (1.0 - x[-1]))
+    >>> found = jb.chaos(np.array(x), 0.01, clean=False)
+    >>> whole, some = jb.plot.series(found, "position", "mm")
+    >>> some.get_ylabel()
+    'position [mm]'
     """
     values = found.mean + found.deviation * found.series
     factor, clock = clock_of(found.dt * values.size)
@@ -77,6 +87,15 @@ def delay(found: ChaosReport, *, ax: Where = None) -> list[Axes]:
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> x = [0.3]
+    >>> for _ in range(999):
+    ...     x.append(3.9 * x[-1] * (1.0 - x[-1]))
+    >>> found = jb.chaos(np.array(x), 0.01, clean=False)
+    >>> jb.plot.delay(found).get_xlabel()
+    'delay [samples]'
     """
     axes = panels(ax, height=SHORT)
     ax = axes[0]
@@ -99,6 +118,16 @@ def dimension(found: ChaosReport, *, ax: Where = None) -> list[Axes]:
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> x = [0.3]
+    >>> for _ in range(999):
+    ...     x.append(3.9 * x[-1] * (1.0 - x[-1]))
+    >>> found = jb.chaos(np.array(x), 0.01, clean=False)
+    >>> cao, neighbours = jb.plot.dimension(found)
+    >>> neighbours.get_ylabel()
+    'false neighbours [%]'
     """
     axes = panels(ax, 1, 2, height=SHORT + 0.3)
     left, right = axes[0], axes[-1]
@@ -133,6 +162,16 @@ def correlation(found: ChaosReport, *, ax: Where = None) -> list[Axes]:
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> x = [0.3]
+    >>> for _ in range(999):
+    ...     x.append(3.9 * x[-1] * (1.0 - x[-1]))
+    >>> found = jb.chaos(np.array(x), 0.01, clean=False)
+    >>> sums, slopes = jb.plot.correlation(found)
+    >>> slopes.get_ylabel()
+    'local slope'
     """
     one = found.correlation
     axes = panels(ax, 1, 2, height=SHORT + 0.4)

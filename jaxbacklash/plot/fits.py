@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..criticism import Ranking, Refinement
 from ..errors import BadInput
 from ..fitting import Comparison, Fit, Score
 from ..fitting.loop import NOTHING, sliding_level
@@ -19,7 +17,6 @@ from .drawing import Drawn, Where
 from .joints import force_loop as loop_of_force
 from .joints import phase_plane as plane_of_phases
 from .joints import restoring_force as force_over_motion
-from .models import candidate_ranking, error_by_stage
 from .motion import INSIDE, Motion, joint_law
 from .times import channels_in_time, measured_against_model, residual_in_time, stretch_of_model
 
@@ -80,6 +77,16 @@ def fit(
     ------
     BadInput
         No such record, or other axes than asked for.
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> fit = jb.fit(record.between(0.0, 2.0), inertia=3.16, starts=1)
+    >>> len(jb.plot.fit(fit))
+    5
+    >>> figure, ax = plt.subplots()
+    >>> jb.plot.fit(fit, between=(0.5, 1.0), ax=ax) is ax
+    True
     """
     one = beside(found, record)
     name, score = one.record.observed_name, one.score
@@ -104,6 +111,14 @@ def residuals(found: Fit | Comparison, *, record: int = 0, ax: Where = None) -> 
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> fit = jb.fit(record.between(0.0, 2.0), inertia=3.16, starts=1)
+    >>> every, windows = jb.plot.residuals(fit)
+    >>> every.get_ylabel()
+    'residual over noise'
     """
     score = beside(found, record).score
     return residual_in_time(score.t, score.residual, window_edges=score.window_times, window_rms=score.window_rms, ax=ax)
@@ -120,6 +135,12 @@ def record(measured: Record | MeasuredSeries | Trajectory, *, ax: Where = None) 
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> [ax.get_ylabel() for ax in jb.plot.record(record)]
+    ['x [rad]', 'z [rad]']
     """
     if isinstance(measured, MeasuredSeries):
         return channels_in_time(measured.t, {measured.name: (measured.values, measured.unit)}, ax=ax)
@@ -148,6 +169,12 @@ def phase_plane(found: Fit | Comparison | Record, *, record: int = 0, ax: Where 
     ------
     BadInput
         The record holds the transmitted force, and no motion of the link.
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> jb.plot.phase_plane(record).get_xlabel()
+    'z [rad]'
     """
     one = None if isinstance(found, Record) else beside(found, record)
     motion = _motion(found if isinstance(found, Record) else one.record)  # type: ignore[union-attr]
@@ -174,6 +201,13 @@ def restoring_force(found: Fit | Comparison, *, record: int = 0, ax: Where = Non
     ------
     BadInput
         The model has no spring, or the record no motion of the link.
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> fit = jb.fit(record.between(0.0, 2.0), inertia=3.16, starts=1)
+    >>> jb.plot.restoring_force(fit).get_ylabel()
+    'torque of the joint [N m]'
     """
     one = beside(found, record)
     if one.system.contact is None:
@@ -204,6 +238,16 @@ def force_loop(found: Fit | Comparison, *, record: int = 0, ax: Where = None) ->
     ------
     BadInput
         The record holds no transmitted force.
+
+    Examples
+    --------
+    >>> t = np.arange(0.0, 4.0, 0.004)
+    >>> x = 0.02 * np.sin(2.0 * np.pi * t)
+    >>> force = 30.0 * np.tanh(400.0 * np.gradient(x, t))
+    >>> measured = jb.Record(t, {"x": x, "T": -force + 0.3 * np.random.default_rng(0).standard_normal(t.size)})
+    >>> fit = jb.fit(measured, inertia=0.5, effects=["coulomb_ground"], starts=1)
+    >>> len(jb.plot.force_loop(fit))
+    2
     """
     one = beside(found, record)
     if "T" not in one.record.channels:
@@ -213,58 +257,6 @@ def force_loop(found: Fit | Comparison, *, record: int = 0, ax: Where = None) ->
         one.record.channels["x"], force, one.score.predicted, level=NOTHING * sliding_level(force),
         unit=channel_unit("T", translational=one.translational), length_unit=one.length, ax=ax,
     )  # fmt: skip
-
-
-def stages(found: Refinement | Fit | Sequence[Fit], *, ax: Where = None) -> Drawn:
-    """Prediction error over noise, model by model, on the record and on the held-out one.
-
-    Parameters
-    ----------
-    found : a refinement, or fits of one record in order
-    ax : one axes; a figure or part of one; None: a new figure
-
-    Returns
-    -------
-    the axes
-    """
-    if isinstance(found, Refinement):
-        return error_by_stage([_stage(stage.fit, stage.added, stage.dropped) for stage in found.stages], ax=ax)
-    fits = [found] if isinstance(found, Fit) else list(found)
-    before: list[set[str]] = [set(one.system.effects) for one in (*fits[:1], *fits)]
-    return error_by_stage(
-        [_stage(one, " + ".join(sorted(set(one.system.effects) - old)) or None, sorted(old - set(one.system.effects)))
-         for one, old in zip(fits, before)], ax=ax,
-    )  # fmt: skip
-
-
-def ranking(found: Ranking, *, most: int = 12, ax: Where = None) -> Drawn:
-    """What the error would become with each absent effect added, best first, with the evidence for it.
-
-    Evidence allows for the parameters that an effect brings: below 0 it speaks against it.
-
-    Parameters
-    ----------
-    found : from `jaxbacklash.rank_effects`
-    most : how many are drawn
-    ax : one axes; a figure or part of one; None: a new figure
-
-    Returns
-    -------
-    the axes
-    """
-    entries = [
-        {
-            "name": one.name, "evidence": one.evidence, "predicted_rms_over_noise": one.predicted_rms_over_noise,
-            "refitted_rms_over_noise": one.refitted_rms_over_noise, "why": one.why,
-        }
-        for one in found
-    ]  # fmt: skip
-    return candidate_ranking(entries, current=found.current, most=most, ax=ax)
-
-
-def _stage(fit: Fit, added: str | None, dropped: Sequence[str]) -> dict[str, Any]:
-    held = None if fit.heldout is None else fit.heldout.rms
-    return {"added": added, "dropped": list(dropped), "rms_over_noise": fit.score.rms, "heldout_rms_over_noise": held}
 
 
 def _motion(record: Record) -> Motion:

@@ -32,6 +32,13 @@ def map(found: Any, *, degrees: bool = False, ax: Where = None) -> Drawn:
     ------
     BadInput
         The map has one axis, or more than two: choose among the others' values first, ``found.isel(zeta=0)``.
+
+    Examples
+    --------
+    >>> found = jb.dynamics.paper_map(1, {"inverse_alpha": [1.5, 2.0, 3.0], "zeta": [0.02, 0.03]}, periods=60, skip=20)
+    >>> exponent, period = jb.plot.map(found)
+    >>> exponent.get_xlabel(), exponent.get_ylabel()
+    ('1/α', 'ζ')
     """
     first, second = _axes(found, 2)
     (x, name, unit), (y, other, other_unit) = (_axis(found, one, degrees) for one in (first, second))
@@ -63,6 +70,13 @@ def exponents(
     ------
     BadInput
         The map has more axes than one: choose among the others' values first, ``found.isel(zeta=0)``.
+
+    Examples
+    --------
+    >>> found = jb.dynamics.paper_map(1, {"inverse_alpha": [1.5, 2.0, 3.0], "zeta": [0.02, 0.03]}, periods=60, skip=20)
+    >>> exponent, motion = jb.plot.exponents(found.isel(zeta=0))
+    >>> exponent.get_ylabel()
+    'largest exponent [1/tau]'
     """
     (only,) = _axes(found, 1)
     x, name, unit = _axis(found, only, degrees)
@@ -90,6 +104,13 @@ def bifurcation(
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> case = jb.dynamics.PaperCase(1)
+    >>> found = jb.dynamics.bifurcation(case, "inverse_alpha", [3.8, 4.2], settle=10, samples=8, start_periods=20)
+    >>> len(jb.plot.bifurcation(found))
+    3
     """
     if "swept_up" not in found:
         raise BadInput("the dataset holds no sweep (swept_up), wanted one from jaxbacklash.dynamics.bifurcation")
@@ -117,6 +138,13 @@ def basins(found: Basins, *, play: tuple[float, float] | None = None, ax: Where 
     Returns
     -------
     the axes
+
+    Examples
+    --------
+    >>> case = jb.dynamics.PaperCase(1)
+    >>> found = jb.dynamics.basins(case, {"inverse_alpha": 3.0}, [-1.0, 0.0, 1.0], [-1.0, 0.0, 1.0], periods=120)
+    >>> jb.plot.basins(found).get_xlabel()
+    'p at the start [half plays]'
     """
     return basin_picture(
         found.y, found.dy, found.number, words=[str(one) for one in found.attractors],

@@ -27,6 +27,14 @@ def where_it_fails(found: Findings, *, ax: Where = None) -> Drawn:
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> fit = jb.fit(record.between(0.0, 2.0), inertia=3.16, starts=1)
+    >>> found = jb.where_it_fails(fit)
+    >>> jb.plot.where_it_fails(found)[0].get_ylabel()
+    'misfit over noise'
     """
     telling = list({entry.coordinate: entry for entry in reversed(found.significant)}.values())[::-1]
     place = [entry for entry in telling if entry.coordinate == "place"]
@@ -49,6 +57,15 @@ def missing_torque(found: Findings | Latent, *, record: int = 0, ax: Where = Non
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> fit = jb.fit(record.between(0.0, 2.0), inertia=3.16, starts=1)
+    >>> found = jb.where_it_fails(fit)
+    >>> whole, stretch = jb.plot.missing_torque(found)
+    >>> stretch.get_xlabel()
+    'time [s]'
     """
     latent = found.latent if isinstance(found, Findings) else found
     surface = found.surface if isinstance(found, Findings) else None
@@ -75,6 +92,14 @@ def torque_over(found: Findings | Surface, *, ax: Where = None) -> Drawn:
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> fit = jb.fit(record.between(0.0, 2.0), inertia=3.16, starts=1)
+    >>> found = jb.where_it_fails(fit)
+    >>> jb.plot.torque_over(found).get_xlabel()
+    'y [rad]'
     """
     surface = found.surface if isinstance(found, Findings) else found
     if surface is None:

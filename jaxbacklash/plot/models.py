@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from .drawing import Where, empty, ink, legend_above, panels, picture, readable_log
+from ..criticism import Ranking, Refinement
+from ..fitting import Fit
+from .drawing import Drawn, Where, empty, ink, legend_above, panels, picture, readable_log
 from .style import GAP, HELDOUT, MEASURED, MODEL, SHORT, format_evidence, is_number, short
 from .words import error_with, stage_name
 
@@ -109,6 +111,72 @@ def candidate_ranking(
     ax.grid(False, axis="y")
     ax.tick_params(axis="y", length=0)
     return axes
+
+
+def stages(found: Refinement | Fit | Sequence[Fit], *, ax: Where = None) -> Drawn:
+    """Prediction error over noise, model by model, on the record and on the held-out one.
+
+    Parameters
+    ----------
+    found : a refinement, or fits of one record in order
+    ax : one axes; a figure or part of one; None: a new figure
+
+    Returns
+    -------
+    the axes
+
+    Examples
+    --------
+    >>> record, heldout = (one.between(0.0, 2.0) for one in jb.demo_records())
+    >>> fits = [jb.fit(record, inertia=3.16, effects=names, heldout=heldout, starts=1) for names in ([], ["gravity"])]
+    >>> [label.get_text() for label in jb.plot.stages(fits).get_xticklabels()]
+    ['base model', '+ gravity']
+    """
+    if isinstance(found, Refinement):
+        return error_by_stage([_stage(stage.fit, stage.added, stage.dropped) for stage in found.stages], ax=ax)
+    fits = [found] if isinstance(found, Fit) else list(found)
+    before: list[set[str]] = [set(one.system.effects) for one in (*fits[:1], *fits)]
+    return error_by_stage(
+        [_stage(one, " + ".join(sorted(set(one.system.effects) - old)) or None, sorted(old - set(one.system.effects)))
+         for one, old in zip(fits, before)], ax=ax,
+    )  # fmt: skip
+
+
+def ranking(found: Ranking, *, most: int = 12, ax: Where = None) -> Drawn:
+    """What the error would become with each absent effect added, best first, with the evidence for it.
+
+    Evidence allows for the parameters that an effect brings: below 0 it speaks against it.
+
+    Parameters
+    ----------
+    found : from `jaxbacklash.rank_effects`
+    most : how many are drawn
+    ax : one axes; a figure or part of one; None: a new figure
+
+    Returns
+    -------
+    the axes
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> fit = jb.fit(record.between(0.0, 2.0), inertia=3.16, starts=1)
+    >>> jb.plot.ranking(jb.rank_effects(fit), most=5).get_xlabel()
+    'rms over noise with the effect added; the best 5 of ...'
+    """
+    entries = [
+        {
+            "name": one.name, "evidence": one.evidence, "predicted_rms_over_noise": one.predicted_rms_over_noise,
+            "refitted_rms_over_noise": one.refitted_rms_over_noise, "why": one.why,
+        }
+        for one in found
+    ]  # fmt: skip
+    return candidate_ranking(entries, current=found.current, most=most, ax=ax)
+
+
+def _stage(fit: Fit, added: str | None, dropped: Sequence[str]) -> dict[str, Any]:
+    held = None if fit.heldout is None else fit.heldout.rms
+    return {"added": added, "dropped": list(dropped), "rms_over_noise": fit.score.rms, "heldout_rms_over_noise": held}
 
 
 def _column(ax: Axes, offset: float, title: str, texts: list[str]) -> None:

@@ -22,6 +22,18 @@ def frequency_response(found: Response, *, ax: Where = None) -> list[Axes]:
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> held = jb.base_motion_joint(3.16, 0.026, 15000.0, 22.0).with_effects(jb.Preload(120.0))
+    >>> lines = np.arange(2.0, 60.0, 0.11)
+    >>> push = jb.Multisine(np.ones(lines.size), 2.0 * np.pi * lines, lines**2, as_force=True)
+    >>> shaken = jb.simulate(held, push, duration=30.0, rate=500.0, y0=0.021)
+    >>> channels = {"F": np.asarray(shaken.drive.force), "y": np.asarray(shaken.y)}
+    >>> found = jb.frequency_response(jb.Record(np.asarray(shaken.t), channels), segment=4.0, band=(4.0, 40.0))
+    >>> size, phase, coherence = jb.plot.frequency_response(found)
+    >>> size.get_ylabel()
+    '|Y/F| [rad/(N m)]'
     """
     values = {name: value.value or 0.0 for name, value in found.values.items()}
     line, used = found.frequency, found.used

@@ -26,6 +26,13 @@ def exponent_over_drive(map_: ExponentMap, found: PlayFromChaos | None = None, *
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> joint = jb.two_link(3.16, np.radians(1.5), 15000.0, 9.0, -60.0, linearised=True)
+    >>> curve = jb.signature.exponent_map(joint, 1.54, (0.6, 5.0, 60), starts=2, periods=60, skip=30)
+    >>> jb.plot.exponent_over_drive(curve).get_xlabel()
+    'amplitude of the base / total play'
     """
     axes = panels(ax, height=MEDIUM)
     ax = axes[0]
@@ -80,6 +87,16 @@ def play_likelihood(
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> joint = jb.two_link(3.16, np.radians(1.5), 15000.0, 9.0, -60.0, linearised=True)
+    >>> curve = jb.signature.exponent_map(joint, 1.54, (0.6, 5.0, 60), starts=2, periods=60, skip=30)
+    >>> levels = [jb.signature.Level(0.05, "chaotic", 1.2, 0.05), jb.signature.Level(0.03, "regular")]
+    >>> found = jb.signature.play_from_exponents(curve, levels)
+    >>> each, together = jb.plot.play_likelihood(found)
+    >>> together.get_xlabel()
+    'total play [deg]'
     """
     axes = panels(ax, 2, height=MEDIUM + 0.6, height_ratios=(1.3, 1.0), sharex=True)
     lower = axes[-1]
@@ -136,6 +153,15 @@ def pattern_region(
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> joint = jb.two_link(3.16, np.radians(1.5), 15000.0, 9.0, -60.0, linearised=True)
+    >>> over = {"damping": [5.0, 9.0]}
+    >>> curve = jb.signature.exponent_map(joint, 1.54, (0.6, 5.0, 60), over=over, starts=2, periods=60, skip=30)
+    >>> match = jb.signature.match_pattern(curve, [0.03, 0.05], [False, True], [0.024, 0.026, 0.028])
+    >>> len(jb.plot.pattern_region(match, across="damping"))
+    2
     """
     names = list(match.axes)
     if across not in names or up not in names or across == up:
@@ -168,6 +194,14 @@ def worth(results: dict[str, Worth] | Worth, *, ax: Where = None) -> list[Axes]:
     Returns
     -------
     the axes, or an array of them
+
+    Examples
+    --------
+    >>> joint = jb.two_link(3.16, np.radians(1.5), 15000.0, 9.0, -60.0, linearised=True)
+    >>> curve = jb.signature.exponent_map(joint, 1.54, (0.6, 5.0, 60), starts=2, periods=60, skip=30)
+    >>> found = jb.signature.worth(curve, [0.03, 0.05], (0.02, 0.03), experiments=5)
+    >>> jb.plot.worth(found).get_xlabel()
+    'true total play [deg]'
     """
     sets = results if isinstance(results, dict) else {"": results}
     axes = panels(ax, 1, len(sets), height=MEDIUM, sharey=True)

@@ -113,10 +113,21 @@ def exponent_map(
     seed : of the starts
     progress : told (stage, share done)
 
+    Returns
+    -------
+    `ExponentMap`: ``exponent`` (starts, ..., ratios) per drive period, and which are ``chaotic``
+
     Raises
     ------
     BadInput
         The scaling does not hold for the system, or a number is out of range.
+
+    Examples
+    --------
+    >>> joint = jb.two_link(3.16, np.radians(1.5), 15000.0, 9.0, -60.0, linearised=True)
+    >>> curve = jb.signature.exponent_map(joint, 1.54, (0.6, 5.0, 60), starts=2, periods=60, skip=30)
+    >>> curve.exponent.shape
+    (2, 60)
     """
     system = _scaling(system)
     low, high, count = float(ratios[0]), float(ratios[1]), int(ratios[2])

@@ -111,10 +111,24 @@ def play_from_exponents(
     false_alarm, missed : how often regular motion is called chaotic, and chaos regular
     systematic : relative standard deviation of exponents beyond their own
 
+    Returns
+    -------
+    `PlayFromChaos`: prints itself; ``value`` and ``interval`` of the play, or ``why`` there is none
+
     Raises
     ------
     BadInput
         No level counts, a rate is out of range, or the map does not reach as far as the levels and plays ask.
+
+    Examples
+    --------
+    >>> joint = jb.two_link(3.16, np.radians(1.5), 15000.0, 9.0, -60.0, linearised=True)
+    >>> curve = jb.signature.exponent_map(joint, 1.54, (0.6, 5.0, 60), starts=2, periods=60, skip=30)
+    >>> levels = [jb.signature.Level(0.05, "chaotic", 1.2, 0.05), jb.signature.Level(0.03, "regular")]
+    >>> found = jb.signature.play_from_exponents(curve, levels)
+    >>> print(found)
+    from 2 drive levels that count, of 2: ... bit about the play
+    ...
     """
     levels = tuple(levels)
     if not any(level.counts for level in levels):

@@ -72,10 +72,21 @@ def match_pattern(map_: ExponentMap, amplitudes: Sequence[float], chaotic: Seque
     chaotic : whether each level was seen to be chaotic
     plays : (B,) total plays in question [rad]
 
+    Returns
+    -------
+    `PatternMatch`: the ``chance`` of the pattern at each joint and play
+
     Raises
     ------
     BadInput
         Lists of unlike length, or a level outside the map.
+
+    Examples
+    --------
+    >>> joint = jb.two_link(3.16, np.radians(1.5), 15000.0, 9.0, -60.0, linearised=True)
+    >>> curve = jb.signature.exponent_map(joint, 1.54, (0.6, 5.0, 60), starts=2, periods=60, skip=30)
+    >>> jb.signature.match_pattern(curve, [0.03, 0.05], [False, True], [0.024, 0.026, 0.028]).chance.shape
+    (3,)
     """
     amplitude, seen, plays = np.asarray(amplitudes, float), np.asarray(chaotic, bool), np.atleast_1d(np.asarray(plays, float))
     if amplitude.shape != seen.shape or amplitude.ndim != 1:

@@ -81,6 +81,17 @@ def worth(
     truth : a map of the joint as it truly is, without further axes; default: ``map_`` itself
     drive_error, false_alarm, missed, systematic : as in `play_from_exponents`; the imagined measurements have them
     seed : of everything drawn
+
+    Returns
+    -------
+    `Worth`: prints itself
+
+    Examples
+    --------
+    >>> joint = jb.two_link(3.16, np.radians(1.5), 15000.0, 9.0, -60.0, linearised=True)
+    >>> curve = jb.signature.exponent_map(joint, 1.54, (0.6, 5.0, 60), starts=2, periods=60, skip=30)
+    >>> print(jb.signature.worth(curve, [0.03, 0.05], (0.02, 0.03), experiments=5))
+    5 imagined experiments: ...
     """
     truth = map_ if truth is None else truth
     if truth.axes:
@@ -101,7 +112,19 @@ def imagine(
     map_: ExponentMap, amplitudes: Sequence[float], play: float, rng: np.random.Generator, stderr: float = 0.1,
     drive_error: float = DRIVE_ERROR, false_alarm: float = FALSE_ALARM, missed: float = MISSED, systematic: float = SYSTEMATIC,
 ) -> list[Level]:  # fmt: skip
-    """One imagined experiment on a joint of the given play: at each level a start, a motion, a verdict, an exponent."""
+    """One imagined experiment on a joint of the given play: at each level a start, a motion, a verdict, an exponent.
+
+    Returns
+    -------
+    a `Level` for each amplitude
+
+    Examples
+    --------
+    >>> joint = jb.two_link(3.16, np.radians(1.5), 15000.0, 9.0, -60.0, linearised=True)
+    >>> curve = jb.signature.exponent_map(joint, 1.54, (0.6, 5.0, 60), starts=2, periods=60, skip=30)
+    >>> [level.amplitude for level in jb.signature.imagine(curve, [0.03, 0.05], 0.026, np.random.default_rng(0))]
+    [0.03, 0.05]
+    """
     starts, chaotic = map_.exponent.shape[0], map_.chaotic
     most = float(np.max(map_.exponent, where=chaotic, initial=0.0))
     levels = []

@@ -59,10 +59,21 @@ def skeleton(
     translational : units of a translating mass
     progress : told the stage in words and the share of the work done
 
+    Returns
+    -------
+    `Skeletons`: prints itself; ``hilbert`` and ``wavelet`` hold ``parameters`` by name, and the curves
+
     Raises
     ------
     BadInput
         A record without the motion of the link, or an inertia that is not positive.
+
+    Examples
+    --------
+    >>> record, heldout = jb.demo_records()
+    >>> found = jb.skeleton(record, inertia=3.16)
+    >>> round(found.wavelet.parameters["backlash"].value, 3)
+    0.026
     """
     if inertia is not None and not (np.isfinite(inertia) and inertia > 0.0):
         raise BadInput(f"--inertia {inertia:g}: wanted a positive number of kg m^2 (kg for a translating mass)")

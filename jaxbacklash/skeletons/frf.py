@@ -80,6 +80,10 @@ def frequency_response(
     band : lowest and highest frequency to use [Hz]; None: all that is coherent
     translational : units of a translating mass
 
+    Returns
+    -------
+    `Response`: prints itself; ``values`` by name, with errors, and the lines
+
     Raises
     ------
     BadInput
@@ -89,8 +93,15 @@ def frequency_response(
 
     Examples
     --------
-    >>> response = frequency_response(read_record("hammer.csv"), band=(3.0, 40.0))  # doctest: +SKIP
-    >>> print(response.values["inertia"].value)  # doctest: +SKIP
+    >>> held = jb.base_motion_joint(3.16, 0.026, 15000.0, 22.0).with_effects(jb.Preload(120.0))
+    >>> lines = np.arange(2.0, 60.0, 0.11)
+    >>> push = jb.Multisine(np.ones(lines.size), 2.0 * np.pi * lines, lines**2, as_force=True)
+    >>> shaken = jb.simulate(held, push, duration=30.0, rate=500.0, y0=0.021)
+    >>> channels = {"F": np.asarray(shaken.drive.force), "y": np.asarray(shaken.y)}
+    >>> test = jb.Record(np.asarray(shaken.t), channels)
+    >>> found = jb.frequency_response(test, segment=4.0, band=(4.0, 40.0))
+    >>> round(found.values["inertia"].value, 1)
+    3.2
     """
     where = record.path or "the record"
     if record.kind != "force" or "y" not in record.channels:

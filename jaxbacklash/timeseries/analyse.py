@@ -66,6 +66,17 @@ def chaos(
     ------
     BadInput
         The series is too short, constant, a straight line such as the time, not finite, or too large to be squared.
+
+    Examples
+    --------
+    >>> x = [0.3]
+    >>> for _ in range(999):
+    ...     x.append(3.9 * x[-1] * (1.0 - x[-1]))
+    >>> found = jb.chaos(np.array(x), 0.01, clean=False)
+    >>> found.verdict.word
+    'chaotic'
+    >>> bool(found.interval[0] < found.lyapunov < found.interval[1])
+    True
     """
     series, dt = _checked(series, dt, count, surrogates, seed)
     tell = progress or (lambda stage, share: None)
