@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from jaxbacklash.records.findings.channel import Channel
 from jaxbacklash.records.findings.held import stale_rows
 
 
@@ -22,8 +23,8 @@ def test_chance_repeats_are_not_stale(noise, digits, significant):
     z = written(noise, digits, significant, seed=digits)
     if digits == 7:
         assert np.count_nonzero(np.diff(z) == 0.0) > 100  # else there is nothing to take for stale
-    assert stale_rows(z).size == 0
-    assert stale_rows(z * np.pi / 180.0).size == 0
+    assert stale_rows(Channel(z)).size == 0
+    assert stale_rows(Channel(z * np.pi / 180.0)).size == 0
 
 
 @pytest.mark.parametrize("significant", [True, False], ids=["digits", "decimals"])
@@ -31,4 +32,4 @@ def test_more_repeats_than_chance_brings_are_stale(significant):
     z = written(1e-6, 8, significant, seed=1)
     rows = np.arange(50, z.size - 50, 500)
     z[rows] = z[rows - 1]
-    assert np.isin(rows, stale_rows(z)).mean() > 0.95
+    assert np.isin(rows, stale_rows(Channel(z))).mean() > 0.95

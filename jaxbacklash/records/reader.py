@@ -25,6 +25,7 @@ from .conversion import in_si
 from .files import read_table
 from .finding import ASK, REFUSE, Finding
 from .findings import find, find_in_times
+from .findings.channel import Channel
 from .findings.held import refreshed_every
 from .findings.mend import after, before
 from .options import ReadOptions
@@ -199,7 +200,7 @@ def _thinned(whole: np.ndarray, channels, t: np.ndarray, options: ReadOptions, u
         return used
     first, second = np.searchsorted(whole, t[:2])
     every = int(second - first)
-    name = next(name for name in sorted(options.despike & set(channels)) if refreshed_every(channels[name]) > 1)
+    name = next(name for name in sorted(options.despike & set(channels)) if refreshed_every(Channel(channels[name])) > 1)
     rate = number((t.size - 1) / (t[-1] - t[0]))
     what = f"has a new value every {every} rows: only those {t.size} rows are used, at {rate} Hz"
     warnings.warn(f"{where}, column {name}: {what}.", UserWarning, stacklevel=4)

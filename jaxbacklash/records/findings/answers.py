@@ -8,7 +8,8 @@ import numpy as np
 
 from jaxbacklash.records.finding import ASK, REFUSE, WARN, Finding
 
-from .local import EVERY, SURPRISE_OF_NOISE, level, quantum, surprise
+from .channel import Channel
+from .local import EVERY, SURPRISE_OF_NOISE, level
 
 LEVELS = 3
 """Values up to which a channel is below its own resolution."""
@@ -35,29 +36,29 @@ FIRST = 12
 """First rows that may be stale: what a buffer or a delay fills."""
 
 
-def answers(t: np.ndarray, channels: Mapping[str, np.ndarray]) -> list[Finding]:
+def answers(t: np.ndarray, channels: Mapping[str, Channel]) -> list[Finding]:
     """What the observed channel (z, y or T) lacks."""
     name = next((one for one in ("z", "y", "T") if one in channels), None)
     if name is None:
         return []
-    values = channels[name]
+    channel = channels[name]
     drive = next((one for one in ("x", "F") if one in channels), None)
-    found = _nothing(values, name, drive)
+    found = _nothing(channel, name, drive)
     if found:
         return found
     if drive is None:
-        return _held_first(t, values, name) or _driven(values, name)
-    return _stale_first(values, name) if name != "T" else []
+        return _held_first(t, channel, name) or _driven(channel, name)
+    return _stale_first(channel, name) if name != "T" else []
 
 
-def _nothing(values: np.ndarray, name: str, drive: str | None) -> list[Finding]:
+def _nothing(channel: Channel, name: str, drive: str | None) -> list[Finding]:
     """A channel of noise alone, or of two or three counts."""
-    span = values.max() - values.min()
+    span, values = channel.span, channel.values
     if span == 0.0:
         return []  # `checks.moving` says so
     moved = f" while {drive} moves" if drive else ""
-    count = quantum(values)
-    if span < (LEVELS - 0.5) * count:
+    if not channel.is_finer(span / LEVELS) and span < (LEVELS - 0.5) * channel.quantum:
+        count = channel.quantum
         what = f"takes {round(span / count) + 1} values only{moved}: its answer is below its resolution of {count:.3g}"
         return [Finding("no-answer", REFUSE, name, what)]
     some = values[:EVERY] - np.mean(values[:EVERY])
@@ -72,16 +73,17 @@ def _nothing(values: np.ndarray, name: str, drive: str | None) -> list[Finding]:
     return [Finding("no-answer", REFUSE, name, what)]
 
 
-def _held_first(t: np.ndarray, values: np.ndarray, name: str) -> list[Finding]:
+def _held_first(t: np.ndarray, channel: Channel, name: str) -> list[Finding]:
     """A free decay whose link was held at first: it stays off its rest for longer than it then takes to swing back.
 
     A hand does not hold still to the noise, so what counts as held is a twentieth of the way to rest. A link that is let go in
     the first row is there for a quarter of the time that it takes to swing back.
     """
+    values = channel.values
     rest = float(np.mean(values[-max(HELD, values.size // 10) :]))
     base = float(np.median(values[:HELD]))
     way = abs(base - rest)
-    noise = level(surprise(values))
+    noise = channel.noise
     left = np.flatnonzero(np.abs(values - base) > LET_GO * way)
     back = np.flatnonzero((values - rest) * (base - rest) < 0)
     if way < FAR * noise or not (left.size and back.size) or not HELD <= left[0] < back[0]:
@@ -100,14 +102,14 @@ def _held_first(t: np.ndarray, values: np.ndarray, name: str) -> list[Finding]:
     return [Finding("held-first", WARN, name, what, rows=(0, release - 1), size=float(t[release - 1]), left_out=release)]
 
 
-def _driven(values: np.ndarray, name: str) -> list[Finding]:
+def _driven(channel: Channel, name: str) -> list[Finding]:
     """A motion that grows where nothing is said to drive it: what a passive joint does alone dies away."""
-    parts = np.array_split(values, PARTS)
+    parts = np.array_split(channel.values, PARTS)
     sizes = [float(np.std(part)) for part in parts]
     most = int(np.argmax(sizes))
     least = int(np.argmin(sizes[: most + 1]))
     swings = min(np.count_nonzero(np.diff(parts[n] > np.mean(parts[n]))) for n in (least, most))
-    grows = sizes[most] > max(GROWN * sizes[least], FAR * level(surprise(values))) and swings >= SWINGS
+    grows = sizes[most] > max(GROWN * sizes[least], FAR * channel.noise) and swings >= SWINGS
     if not grows or sizes[-1] < LASTS * sizes[most]:
         return []
     what = (
@@ -118,19 +120,22 @@ def _driven(values: np.ndarray, name: str) -> list[Finding]:
     return [Finding("driven", ASK, name, what, size=sizes[most] / max(sizes[least], 1e-300))]
 
 
-def _stale_first(values: np.ndarray, name: str) -> list[Finding]:
+def _stale_first(channel: Channel, name: str) -> list[Finding]:
     """First rows that repeat one value, until the channel goes on at full speed."""
-    noise = max(level(surprise(values[:EVERY])), 0.3 * quantum(values))
+    values, surprises = channel.values, channel.surprises
+    noise = level(surprises[:EVERY]) if channel.size > EVERY else channel.noise
+    if not channel.is_finer(noise / 0.3):
+        noise = max(noise, 0.3 * channel.quantum)
     still = np.abs(values[: FIRST + 2] - values[0]) < 5 * noise
     if still.all() or values.size < 4 * FIRST:
         return []
     last = int(np.argmin(still)) - 1  # the last row that is still
     if not 1 <= last <= FIRST:
         return []
-    here = float(np.max(np.abs(surprise(values[: last + 5])[max(last - 1, 2) : last + 3])))
+    here = float(np.max(np.abs(surprises[max(last - 1, 2) : last + 3])))
     # The first samples, where they have as sharp a corner, save going through all.
-    for some in (values[:EVERY], values):
-        elsewhere = float(np.max(np.abs(surprise(some)[last + 6 :])))
+    for some in (surprises[:EVERY], surprises):
+        elsewhere = float(np.max(np.abs(some[last + 6 :])))
         if here < CORNER * max(elsewhere, SURPRISE_OF_NOISE * noise):
             return []
     what = f"repeats its first value up to row {last + 1} and then goes on at full speed; those rows are stale and left out"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import TypeVar
 
 import numpy as np
 
@@ -10,7 +11,10 @@ from jaxbacklash.records.finding import WARN, Finding
 from jaxbacklash.records.options import ReadOptions
 
 from . import answers, held, jumps, limits, mend, quantities, relations, spikes, stamps
+from .channel import Channel, by_name
 from .rules import silenced
+
+Part = TypeVar("Part")
 
 SHORTEST = 64
 """Samples from which noise and motion can be told apart, see `checks.MIN_SAMPLES`."""
@@ -46,16 +50,17 @@ def find(
     list of Finding
         Those that refuse or ask first. What the user has answered is not among them.
     """
-    channels = {name: values for name, values in channels.items() if values.size >= SHORTEST}
-    if not channels:
+    looked_at = by_name({name: values for name, values in channels.items() if values.size >= SHORTEST})
+    if not looked_at:
         return []
     found: list[Finding] = []
     # What one check finds would set off the next: a code stands out, a wrap shifts, and neither follows anything. So a channel is
     # looked at further once it is mended, and the whole record once no channel waits for an answer.
     for check in (jumps.known_wraps, spikes.codes, jumps.wraps, held.held, spikes.spikes):
-        new = _open(check(_others(channels, found)), options, units_stated)
-        channels = mend.after(t, channels, {}, new)[1] if new else channels
+        new = _open(check(_others(looked_at, found)), options, units_stated)
+        looked_at = _mended(t, looked_at, new) if new else looked_at
         found += new
+    channels = {name: channel.values for name, channel in looked_at.items()}
     new = _open(quantities.quantities(_others(channels, found), options, units_stated), options, units_stated)
     if any(one.kind == "degrees" for one in new):  # A size, which a gear or a sample never measured changes too.
         if _waiting(found):
@@ -64,9 +69,9 @@ def find(
             new = _open(relations.before_sizes(channels, extras), options, units_stated) or new
     found += new
     for whole in (
-        lambda: limits.clipped(channels) or held.held_rows(channels) or jumps.shifts(t, channels),
+        lambda: limits.clipped(looked_at) or held.held_rows(looked_at) or jumps.shifts(t, looked_at),
         lambda: relations.relations(channels, extras),
-        lambda: answers.answers(t, channels),
+        lambda: answers.answers(t, looked_at),
     ):
         if not _waiting(found):
             found += _open(whole(), options, units_stated)
@@ -90,9 +95,16 @@ def find_in_times(t: np.ndarray, options: ReadOptions, *, units_stated: frozense
     return _open(stamps.stamps(t), options, units_stated)
 
 
-def _others(channels: Mapping[str, np.ndarray], found: list[Finding]) -> dict[str, np.ndarray]:
+def _others(channels: Mapping[str, Part], found: list[Finding]) -> dict[str, Part]:
     """The channels about which nothing is refused or asked yet."""
-    return {name: values for name, values in channels.items() if name not in _waiting(found)}
+    waiting = _waiting(found)
+    return {name: channel for name, channel in channels.items() if name not in waiting}
+
+
+def _mended(t: np.ndarray, channels: Mapping[str, Channel], found: list[Finding]) -> dict[str, Channel]:
+    """The channels without what the findings say is bridged; those that stay as they are keep what is known of them."""
+    mended = mend.after(t, {name: channel.values for name, channel in channels.items()}, {}, found)[1]
+    return {name: one if mended[name] is one.values else Channel(mended[name]) for name, one in channels.items()}
 
 
 def _waiting(found: list[Finding]) -> set[str]:

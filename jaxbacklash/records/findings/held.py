@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from jaxbacklash.records.finding import ASK, WARN, Finding
 
-from .local import EVERY, SURPRISE_OF_NOISE, common_step, each, listed_rows, quantum, runs, surprise
+from .channel import Channel, each
+from .local import EVERY, SURPRISE_OF_NOISE, common_step, listed_rows, runs
 
 HELD_ROWS = 4
 """Equal rows from which on they count as filled with the last one, where they end in a jump."""
@@ -29,22 +30,18 @@ MOST = 0.2
 """Share of the samples up to which they are called stale; beyond it the channel is coarse or at rest."""
 
 
-def held(channels: Mapping[str, np.ndarray]) -> list[Finding]:
+def held(channels: Mapping[str, Channel]) -> list[Finding]:
     """Channels that hold their value; of a force that is how amplifiers put it out."""
-    channels = {name: values for name, values in channels.items() if name != "F"}
-    # Whole rows that stand still for longer are said by `held_rows`.
-    stands = [np.diff(values) == 0.0 for values in channels.values()]
-    together = np.logical_and.reduce(stands) if len(stands) > 1 else np.zeros(0, dtype=bool)
-    first, length = runs(together) if together.any() else (np.zeros(0, dtype=int),) * 2
-    rows = [np.arange(a + 1, a + n + 1) for a, n in zip(first, length, strict=True) if n >= HELD_ROWS - 1]
-    lost = np.concatenate([np.zeros(0, dtype=int), *rows])
+    channels = {name: channel for name, channel in channels.items() if name != "F"}
     found = []
     for name, (every, stale) in each(_refreshed_and_stale, channels).items():
         if every > 1:
             what = f"has a new value every {every} rows only and holds it in between"
             found.append(Finding("held", ASK, name, what, f"--despike {name}", size=float(every)))
             continue
-        stale = np.setdiff1d(stale, lost)
+        if stale.size:
+            # Whole rows that stand still for longer are said by `held_rows`.
+            stale = np.setdiff1d(stale, _still_together(channels))
         if stale.size >= FEW_STALE:
             what = f"{listed_rows(stale)} repeat{'s' if stale.size == 1 else ''} the value before while the motion goes on"
             few = stale.size <= max(3, 1e-3 * channels[name].size)
@@ -63,52 +60,64 @@ def held(channels: Mapping[str, np.ndarray]) -> list[Finding]:
     return found
 
 
-def _refreshed_and_stale(values: np.ndarray) -> tuple[int, np.ndarray]:
-    every = refreshed_every(values)
-    return every, stale_rows(values, every)
+def _still_together(channels: Mapping[str, Channel]) -> np.ndarray:
+    """Rows of long stretches in which several channels all repeat the value before."""
+    if len(channels) < 2:
+        return np.zeros(0, dtype=int)
+    first, length = runs(np.logical_and.reduce([channel.rests for channel in channels.values()]))
+    rows = [np.arange(a + 1, a + n + 1) for a, n in zip(first, length, strict=True) if n >= HELD_ROWS - 1]
+    return np.concatenate([np.zeros(0, dtype=int), *rows])
 
 
-def refreshed_every(values: np.ndarray) -> int:
+def _refreshed_and_stale(channel: Channel) -> tuple[int, np.ndarray]:
+    every = refreshed_every(channel)
+    return every, stale_rows(channel, every)
+
+
+def refreshed_every(channel: Channel) -> int:
     """k where a channel has a new value every k-th row only and keeps it in between; 1 where it has one in every row."""
-    steps = np.diff(values)
-    if not 16 <= np.count_nonzero(steps) <= 0.6 * values.size:
+    values = channel.values
+    if not 16 <= channel.steps.size - channel.repeats <= 0.6 * values.size:
         return 1
-    changes = np.flatnonzero(steps)
+    changes = np.flatnonzero(channel.steps)
     lengths = np.diff(changes)
     every = int(np.median(lengths))
     if every < 2 or np.count_nonzero(lengths % every == 0) < REGULAR * lengths.size:
         return 1
     # A coarse encoder at a steady speed also counts regularly, but by single counts.
     steps = np.abs(np.diff(values[changes]))
-    return every if np.median(steps) > LIVELY / 2 * quantum(values) else 1
+    return every if np.median(steps) > LIVELY / 2 * channel.quantum else 1
 
 
-def stale_rows(values: np.ndarray, every: int | None = None) -> np.ndarray:
+def stale_rows(channel: Channel, every: int | None = None) -> np.ndarray:
     """Rows (from 0) that repeat the value before though the channel is too finely read, or moves too fast, for that by chance.
 
-    ``every`` is what `refreshed_every` gives for the values (N,), where that is known.
+    ``every`` is what `refreshed_every` gives for the channel, where that is known.
     """
     none = np.zeros(0, dtype=int)
-    steps = np.diff(values)
-    rests = steps == 0.0
-    if np.count_nonzero(rests) < FEW_STALE:
+    if channel.repeats < FEW_STALE:
         return none
+    values, rests = channel.values, channel.rests
     # Longer runs are a rest, or what `held_rows` speaks of.
     length = runs(rests)[1]
     still = np.flatnonzero(rests)[np.repeat(length < HELD_ROWS, length)] + 1
-    if still.size < FEW_STALE or still.size > MOST * values.size or (every or refreshed_every(values)) > 1:
+    if still.size < FEW_STALE or still.size > MOST * values.size or (every or refreshed_every(channel)) > 1:
         return none
-    count = quantum(values)
-    coarsest, repeats = _by_size(values, steps)
-    count = max(count, coarsest)
-    size = np.abs(steps)
+    # More repeats by chance than this, and there are too few to be called stale, unless the motion overtakes them.
+    most = (still.size - FEW_STALE) / BY_CHANCE
+    overtaken = _overtaken(values, rests, 0.0).size >= FEW_STALE
+    coarsest, repeats = _by_size(channel, np.inf if overtaken else most)
+    if repeats > most and not overtaken:
+        return none
+    count = max(channel.quantum, coarsest)
+    size = np.abs(channel.steps)
     single = (size > 0.5 * count) & (size < 1.5 * count)
     repeats = max(repeats, np.count_nonzero(single) / 2)
     # Where noise is many counts even at the quietest, repeats are by chance half as many as steps of a single count to and fro.
-    if count < FINE * _quietest(values) and still.size >= FEW_STALE + BY_CHANCE * repeats:
+    if count < FINE * _quietest(channel) and still.size >= FEW_STALE + BY_CHANCE * repeats:
         # A limit that is met again and again is another finding, see `limits`.
-        return still[(values[still] < values.max()) & (values[still] > values.min())]
-    rows = _overtaken(values, rests, count)
+        return still[(values[still] < channel.high) & (values[still] > channel.low)]
+    rows = _overtaken(values, rests, count) if overtaken else none
     if rows.size < FEW_STALE:
         return none
     # Samples that move by a single count amid fast motion are as rare as those that do not move at all, but for stale ones.
@@ -116,20 +125,25 @@ def stale_rows(values: np.ndarray, every: int | None = None) -> np.ndarray:
     return rows if rows.size >= FEW_STALE + BY_CHANCE * expected else none
 
 
-def _by_size(values: np.ndarray, steps: np.ndarray) -> tuple[float, float]:
+def _by_size(channel: Channel, enough: float) -> tuple[float, float]:
     """The coarsest count of any group of samples of like size, and the repeats that counting brings by chance in all of them.
 
-    Zero where the steps are multiples of none: then too few of them are small for a repeat by chance.
+    Zero where the steps are multiples of none: then too few of them are small for a repeat by chance. Once the repeats are more
+    than ``enough``, further groups are not looked at.
     """
-    steps = np.abs(steps)
-    # Of a long record the smallest steps: only these tell what it is counted in.
-    some = steps[:: max(1, steps.size // EVERY)]
-    rows = np.flatnonzero(steps <= np.quantile(some, min(EVERY / steps.size, 1.0)))
-    steps, size = steps[rows], np.maximum(np.abs(values[rows]), np.abs(values[rows + 1]))
+    steps, before, after = np.abs(channel.steps), channel.values[:-1], channel.values[1:]
+    if steps.size > EVERY:
+        # Of a long record the smallest steps: only these tell what it is counted in.
+        some = steps[:: max(1, steps.size // EVERY)]
+        rows = np.flatnonzero(steps <= np.quantile(some, EVERY / steps.size))
+        steps, before, after = steps[rows], before[rows], after[rows]
+    size = np.maximum(np.abs(before), np.abs(after))
     coarsest, repeats = 0.0, 0.0
-    for group in np.array_split(np.argsort(size), min(max(steps.size // FEWEST, 1), GROUPS)):
+    for group in _of_like_size(size, min(max(steps.size // FEWEST, 1), GROUPS)):
+        if repeats > enough:
+            break
         found = steps[group]
-        found = np.sort(found[found > 1e-12 * size[group[-1]]])
+        found = np.sort(found[found > 1e-12 * size[group].max()])
         count = common_step(found)
         if count is not None and found.size > SOME:
             coarsest = max(coarsest, count)
@@ -138,11 +152,22 @@ def _by_size(values: np.ndarray, steps: np.ndarray) -> tuple[float, float]:
     return coarsest, repeats
 
 
-def _quietest(values: np.ndarray) -> float:
+def _of_like_size(size: np.ndarray, groups: int) -> Iterator[np.ndarray]:
+    """Places in ``size`` (N,) in as many groups, the smallest first; the others are only sorted when they are asked for."""
+    if groups > 1:
+        first = -(-size.size // groups)
+        order = np.argpartition(size, first)
+        yield order[:first]
+        rest = order[first:]
+        yield from np.array_split(rest[np.argsort(size[rest])], groups - 1)
+    else:
+        yield np.arange(size.size)
+
+
+def _quietest(channel: Channel) -> float:
     """The noise of a channel where it moves least: the lowest tenth of its stretches."""
-    blocks = values[: values.size // BLOCK * BLOCK].reshape(-1, BLOCK)
-    blocks = blocks[:: max(1, values.size // EVERY)]
-    blocks = np.abs(surprise(blocks.ravel())).reshape(-1, BLOCK)[:, 2:-2]
+    blocks = channel.surprises[: channel.size // BLOCK * BLOCK].reshape(-1, BLOCK)
+    blocks = np.abs(blocks[:: max(1, channel.size // EVERY), 2:-2])
     return float(np.quantile(np.median(blocks, axis=1), 0.1)) / (0.6745 * SURPRISE_OF_NOISE)
 
 
@@ -161,27 +186,26 @@ def _overtaken(values: np.ndarray, small: np.ndarray, count: float) -> np.ndarra
     return np.repeat(first + 1 + length - np.cumsum(length), length) + np.arange(length.sum())
 
 
-def held_rows(channels: Mapping[str, np.ndarray]) -> list[Finding]:
+def held_rows(channels: Mapping[str, Channel]) -> list[Finding]:
     """Samples lost and filled with the last one: all channels stand still together, then jump by more than one step."""
-    columns = list(channels.values())
-    still = np.all([np.diff(values) == 0 for values in columns], axis=0)
-    ends = np.flatnonzero(still[:-1] & ~still[1:])
-    if not ends.size:
+    still = np.logical_and.reduce([channel.rests for channel in channels.values()])
+    first, lengths = runs(still)
+    long = (lengths + 1 >= HELD_ROWS) & (first + lengths < still.size)
+    if not long.any():
         return []
-    lengths = runs(still)[1][: ends.size] + 1
-    jumps = np.zeros(ends.size, dtype=bool)
-    for values in columns:
-        steps = np.abs(np.diff(values))
+    first, lengths = first[long], lengths[long]
+    jumps = np.zeros(first.size, dtype=bool)
+    for channel in channels.values():
+        steps = np.abs(channel.steps)
         moved = steps[steps > 0]
         if moved.size:
             # An encoder at a turning point also stands still, but leaves it by one count.
-            jumps |= steps[ends + 1] > 3 * np.median(moved)
-    rows = np.flatnonzero(jumps & (lengths >= HELD_ROWS))
-    if not rows.size:
+            jumps |= steps[first + lengths] > 3 * np.median(moved)
+    if not jumps.any():
         return []
-    first = ends[rows[0]] - lengths[rows[0]] + 2
+    first, lengths = first[jumps], lengths[jumps]
     what = (
-        f"{rows.size} stretches of up to {lengths[rows].max()} equal rows end in a jump, the first at row {first + 1}; "
+        f"{first.size} stretches of up to {lengths.max() + 1} equal rows end in a jump, the first at row {first[0] + 1}; "
         "samples look lost and filled with the last value"
     )
-    return [Finding("held-rows", WARN, "", what, rows=(int(first),))]
+    return [Finding("held-rows", WARN, "", what, rows=(int(first[0]),))]

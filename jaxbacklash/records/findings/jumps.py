@@ -8,7 +8,8 @@ import numpy as np
 
 from jaxbacklash.records.finding import ASK, REFUSE, Finding
 
-from .local import SURPRISE_OF_NOISE, around, beyond, each, level, positions, quantum, surprise
+from .channel import Channel, each, positions
+from .local import SURPRISE_OF_NOISE, around, beyond
 
 TURNS = {2 * np.pi: "2 pi", np.pi: "pi", 360.0: "360", 180.0: "180"}
 """Where angles begin anew, in rad and degrees."""
@@ -34,15 +35,15 @@ SHIFTS = 5
 """More shifts than this are how the thing moves: a stepper, a base moved by a staircase."""
 
 
-def known_wraps(channels: Mapping[str, np.ndarray]) -> list[Finding]:
+def known_wraps(channels: Mapping[str, Channel]) -> list[Finding]:
     """Jumps by a turn that is known by its size, in x, y and z."""
     return wraps(channels, known=True)
 
 
-def wraps(channels: Mapping[str, np.ndarray], known: bool = False) -> list[Finding]:
+def wraps(channels: Mapping[str, Channel], known: bool = False) -> list[Finding]:
     """Jumps by any turn, or by those ``known``, in x, y and z."""
     found = []
-    for name, jumped in each(lambda values: turn_of(values, known), positions(channels)).items():
+    for name, jumped in each(lambda channel: turn_of(channel, known), positions(channels)).items():
         if jumped:
             turn, rows = jumped
             called = TURNS.get(turn, f"{turn:.6g}")
@@ -52,12 +53,14 @@ def wraps(channels: Mapping[str, np.ndarray], known: bool = False) -> list[Findi
     return found
 
 
-def turn_of(values: np.ndarray, known: bool = False) -> tuple[float, np.ndarray] | None:
+def turn_of(channel: Channel, known: bool = False) -> tuple[float, np.ndarray] | None:
     """The turn by which a position jumps, in its own unit, and the rows before the jumps; None where it does not."""
-    steps = np.diff(values)
-    span = values.max() - values.min()
+    span = channel.span
+    if channel.longest <= 0.4 * span:
+        return None
+    steps = channel.steps
     rows = beyond(steps, 0.4 * span)
-    if not rows.size or rows.size > steps.size / 2:
+    if rows.size > steps.size / 2:
         return None
     jumping = np.zeros(steps.size, dtype=bool)
     jumping[rows] = True
@@ -67,7 +70,7 @@ def turn_of(values: np.ndarray, known: bool = False) -> tuple[float, np.ndarray]
     sizes = np.abs(steps[rows] - (before + after) / 2)
     beside = np.maximum(np.abs(before), np.abs(after))
     turns = list(TURNS)
-    count = _count(values[:4096])
+    count = _count(channel.values[:4096])
     turns += [count * 2.0**bits for bits in COUNTS if count]
     clear = sizes > KNOWN * beside
     for turn in turns:
@@ -89,20 +92,19 @@ def _count(values: np.ndarray) -> float:
     """The size of one count of a position that was measured in whole counts and perhaps scaled since; 0 where it was not."""
     if np.array_equal(values, np.round(values)):
         return 1.0
-    one = quantum(values)
+    one = Channel(values).quantum
     counts = values / one if one else values
     return one if one and np.abs(counts - np.round(counts)).max() < WHOLE else 0.0
 
 
-def shifts_of(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def shifts_of(channel: Channel) -> tuple[np.ndarray, np.ndarray]:
     """Rows (of the last sample before) and sizes of lasting shifts of a position that moves on as before."""
     none = np.zeros(0, dtype=int), np.zeros(0)
-    r = surprise(values)
-    floor = level(r) * SURPRISE_OF_NOISE
-    rows = beyond(r, 0.5 * SHIFT * floor)
+    rows = channel.standing_out(0.5 * SHIFT)
     if not rows.size:
         return none
-    floor = max(floor, 0.3 * quantum(values))
+    values, r = channel.values, channel.surprises
+    floor = max(channel.noise * SURPRISE_OF_NOISE, 0.3 * channel.quantum)
     rows = rows[np.abs(r[rows]) > 0.5 * SHIFT * floor]
     if not rows.size or rows.size > 50 * SHIFTS:
         return none
@@ -123,23 +125,23 @@ def shifts_of(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return (rows, sizes) if rows.size <= SHIFTS else none
 
 
-def _not_lost_rows(channels: Mapping[str, np.ndarray], name: str, row: int, size: float) -> bool:
+def _not_lost_rows(channels: Mapping[str, Channel], name: str, row: int, size: float) -> bool:
     """Whether a shift is none that a few rows make which were not written: too large, or another channel moves and has it not."""
-    steps = np.abs(np.diff(channels[name][row - 1 : row + 3]))
+    steps = np.abs(channels[name].steps[row - 1 : row + 2])
     moves = max(steps[0], steps[2])
     if abs(size) > ROWS_LOST * moves:
         return True
     if abs(size) < moves:  # a sample that was taken late shifts nothing for good, but may look so for the rows around it
         return False
-    for other, values in channels.items():
-        mine = values[row - 2 : row + 5]
+    for other, channel in channels.items():
+        mine = channel.values[row - 2 : row + 5]
         usual = abs(float(mine[-1] - mine[0])) / 6
-        if other != name and usual > LIVELY * level(surprise(values)) and abs(mine[3] - mine[2]) < 1.2 * usual:
+        if other != name and usual > LIVELY * channel.noise and abs(mine[3] - mine[2]) < 1.2 * usual:
             return True
     return False
 
 
-def shifts(t: np.ndarray, channels: Mapping[str, np.ndarray]) -> list[Finding]:
+def shifts(t: np.ndarray, channels: Mapping[str, Channel]) -> list[Finding]:
     """Counts lost: x, y or z alone goes on from another zero."""
     every = each(shifts_of, positions(channels))
     found: list[Finding] = []

@@ -8,6 +8,7 @@ import numpy as np
 
 from jaxbacklash.records.finding import WARN, Finding
 
+from .channel import Channel
 from .local import runs
 
 CLIPPED_RUN = 5
@@ -19,17 +20,18 @@ STRAIGHT_ON = 0.5
 switched between two values gets there in one step, and means it."""
 
 
-def clipped(channels: Mapping[str, np.ndarray]) -> list[Finding]:
+def clipped(channels: Mapping[str, Channel]) -> list[Finding]:
     """Sensors at their stop, and forces that were limited."""
-    return [one for name, values in channels.items() for one in _clipped(values, name)]
+    return [one for name, channel in channels.items() for one in _clipped(channel, name)]
 
 
-def _clipped(values: np.ndarray, name: str) -> list[Finding]:
+def _clipped(channel: Channel, name: str) -> list[Finding]:
     """A sensor at its stop returns one value for as long as the motion is beyond it, again and again.
 
     A coarse encoder also repeats its largest count at each crest, but no oftener than a few times the count next to it.
     """
-    for limit, word in ((values.max(), "largest"), (values.min(), "smallest")):
+    values = channel.values
+    for limit, word in ((channel.high, "largest"), (channel.low, "smallest")):
         at_limit = values == limit
         if np.count_nonzero(at_limit) < CLIPPED_RUN * CLIPPED_RUNS:
             continue

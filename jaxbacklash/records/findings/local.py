@@ -2,15 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TypeVar
+from collections.abc import Sequence
 
 import numpy as np
-
-from jaxbacklash.side_by_side import side_by_side
-
-POSITIONS = ("x", "y", "z")
-"""Channels of things that have mass, and so neither jump nor stand out for a single sample; forces may."""
 
 SURPRISE_OF_NOISE = 1.39
 """Standard deviation of `surprise` under white noise of standard deviation 1."""
@@ -19,10 +13,8 @@ EVERY = 65536
 """Samples from which a level is taken: its error is under a percent, and a long record costs no more."""
 _PIECE = 16384
 """Samples that are worked on at once."""
-LONG = 200_000
-"""Samples from which on a channel is worth a core of its own."""
-
-Found = TypeVar("Found")
+RANKS, SHARE = (0, 1, 2, 4, 8, 16), 200
+"""Places among the sorted steps, and the share of them, up to which one is tried as what a channel is counted in."""
 
 
 def surprise(values: np.ndarray) -> np.ndarray:
@@ -44,18 +36,6 @@ def surprise(values: np.ndarray) -> np.ndarray:
         part = values[first : first + _PIECE + 4]
         out[first + 2 : first + part.size - 2] = part[2:-2] - (4.0 * (part[1:-3] + part[3:-1]) - part[:-4] - part[4:]) / 6.0
     return out
-
-
-def each(work: Callable[[np.ndarray], Found], channels: Mapping[str, np.ndarray]) -> dict[str, Found]:
-    """What ``work`` finds in each channel (N,); in long ones side by side."""
-    longest = max((values.size for values in channels.values()), default=0)
-    found = side_by_side(work, channels.values()) if longest > LONG else map(work, channels.values())
-    return dict(zip(channels, found, strict=True))
-
-
-def positions(channels: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The channels that are `POSITIONS`, in their order."""
-    return {name: channels[name] for name in POSITIONS if name in channels}
 
 
 def beyond(values: np.ndarray, limit: float) -> np.ndarray:
@@ -89,26 +69,12 @@ def runs(flags: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return edges[::2], edges[1::2] - edges[::2]
 
 
-def quantum(values: np.ndarray) -> float:
-    """What a channel (N,) is counted in: the step of which its smaller steps are multiples.
-
-    Where they are multiples of none, nothing is counted that matters: the smallest step, or a thousandth of the usual one. For
-    a constant 0.
-    """
-    steps = np.abs(np.diff(values[:EVERY]))
-    steps = np.sort(steps[steps > 1e-12 * max(abs(float(values.max())), abs(float(values.min())))])
-    if not steps.size:
-        return 0.0
-    count = common_step(steps)
-    return min(1e-3 * float(np.median(steps)), float(steps[0])) if count is None else count
-
-
 def common_step(steps: np.ndarray) -> float | None:
     """The step of which the smaller ones of sorted ``steps`` (N,), all above 0, are multiples; None where there is none."""
     if not steps.size:
         return None
     # Several are tried, since a bridged sample or two are no multiples, and in fast motion single counts are rare.
-    for rank in (0, 1, 2, 4, 8, 16, steps.size // 200):
+    for rank in (*RANKS, steps.size // SHARE):
         count = float(steps[min(rank, steps.size - 1)])
         small = steps[: np.searchsorted(steps, 200 * count)] / count
         if small.size >= min(16, steps.size) and np.count_nonzero(np.abs(small - np.rint(small)) < 0.1) / small.size > 0.9:

@@ -10,6 +10,7 @@ from jaxbacklash.records.finding import Finding
 from jaxbacklash.records.options import ReadOptions
 
 from . import held, jumps, spikes
+from .channel import Channel
 from .local import bridge
 
 
@@ -33,7 +34,7 @@ def unwrap(values: np.ndarray, turn: float | None = None) -> np.ndarray:
     array([3.  , 3.1 , 3.2 , 3.3 ])
     """
     if turn is None:
-        found = jumps.turn_of(values)
+        found = jumps.turn_of(Channel(values))
         if found is None:
             return values
         turn = found[0]
@@ -42,20 +43,21 @@ def unwrap(values: np.ndarray, turn: float | None = None) -> np.ndarray:
 
 def unshift(values: np.ndarray) -> np.ndarray:
     """A position (N,) without its lasting shifts: what comes after a loss of counts is moved back by it."""
-    for row, size in zip(*jumps.shifts_of(values), strict=True):
+    for row, size in zip(*jumps.shifts_of(Channel(values)), strict=True):
         values = np.concatenate([values[: row + 1], values[row + 1 :] - size])
     return values
 
 
 def despiked(values: np.ndarray) -> np.ndarray:
     """A channel (N,) whose samples that were never measured (`spikes.bad_rows`, `held.stale_rows`) are bridged by the others."""
-    rows = np.union1d(spikes.bad_rows(values), held.stale_rows(values))
+    channel = Channel(values)
+    rows = np.union1d(spikes.bad_rows(channel), held.stale_rows(channel))
     return bridge(values, rows) if rows.size else values
 
 
 def fresh(values: np.ndarray) -> slice:
     """The rows at which a channel (N,) that is refreshed every k-th row has a new value; all rows where k is 1."""
-    every = held.refreshed_every(values)
+    every = held.refreshed_every(Channel(values))
     if every == 1:
         return slice(None)
     changes = np.flatnonzero(np.diff(values)) + 1
@@ -107,10 +109,10 @@ def before(
             values = -values
         if name == "x" and options.ratio is not None:
             values = values / options.ratio
-        if name in options.despike and held.refreshed_every(values) == 1:
+        if name in options.despike and held.refreshed_every(Channel(values)) == 1:
             values = despiked(values)
         if name in options.unwrap:
-            jumped = jumps.turn_of(values)
+            jumped = jumps.turn_of(Channel(values))
             if jumped is not None:
                 turned[name] = jumped[0]
                 values = unwrap(values, jumped[0])

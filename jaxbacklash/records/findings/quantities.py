@@ -10,7 +10,7 @@ import numpy as np
 from jaxbacklash.records.finding import ASK, Finding
 from jaxbacklash.records.options import ReadOptions
 
-from .local import POSITIONS
+from .channel import POSITIONS, Channel
 from .spikes import bad_rows
 
 MAX_RELATIVE_RAD = 1.0
@@ -58,9 +58,10 @@ def degrees(channels: Mapping[str, np.ndarray], stated: Collection[str]) -> list
         suspects["x"] = (_peak(channels["x"]), MAX_BASE_RAD)
     beyond = [name for name, (peak, most) in suspects.items() if peak > most and name not in stated]
     # A sample that was never measured is no motion; looking for those takes time, so only here.
-    suspects |= {
-        name: (_peak(np.delete(channels[name], bad_rows(channels[name]))), suspects[name][1]) for name in beyond if name != "y"
-    }
+    for name in beyond:
+        if name != "y":
+            good = np.delete(channels[name], bad_rows(Channel(channels[name])))
+            suspects[name] = (_peak(good), suspects[name][1])
     beyond = [name for name in beyond if suspects[name][0] > suspects[name][1]]
     if not beyond:
         return []

@@ -46,6 +46,9 @@ SAMPLES = 32768
 FAST = 512
 """Samples are taken in whole numbers of so many: a Fourier transform whose length has large prime factors is ten times slower."""
 
+Gain = tuple[int, float, complex]
+"""First line, coherence and gain of an octave, see `_gains`."""
+
 
 def relations(channels: Mapping[str, np.ndarray], extras: Mapping[str, np.ndarray]) -> list[Finding]:
     """Contradictions between x, y and z, and a y or z that follows x as no joint lets it."""
@@ -55,8 +58,11 @@ def relations(channels: Mapping[str, np.ndarray], extras: Mapping[str, np.ndarra
     if z is not None and y is not None and y.dtype.kind == "f" and np.isfinite(y).all():
         return _three(x, y, z)
     if y is not None and "y" in channels:
-        return _following(x, y)
-    return _taken_for_y(x, z) or _turned(x, z) if z is not None else []
+        return _following(_gains(x, y))
+    if z is None:
+        return []
+    gains = _gains(x, z)
+    return _taken_for_y(gains) or _turned(gains)
 
 
 def before_sizes(channels: Mapping[str, np.ndarray], extras: Mapping[str, np.ndarray]) -> list[Finding]:
@@ -86,9 +92,9 @@ def _three(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> list[Finding]:
     return [Finding("axes", ASK, "z", what, size=share)]
 
 
-def _following(x: np.ndarray, y: np.ndarray) -> list[Finding]:
-    """A y that follows x in slow motion, but smaller, larger or the other way."""
-    gain, open_ = slow_gain(x, y) or (1.0, 0.0)
+def _following(gains: list[Gain]) -> list[Finding]:
+    """A y that follows x in slow motion, but smaller, larger or the other way; ``gains`` are those from x to y."""
+    gain, open_ = slow_gain(gains) or (1.0, 0.0)
     if 1 / LIKE_ONE < gain < LIKE_ONE:
         return []
     if -LIKE_ONE < gain < -1 / LIKE_ONE:
@@ -112,22 +118,22 @@ def _of_teeth(ratio: float) -> float:
     return float(round(ratio)) if abs(ratio) > 1.5 and abs(ratio / round(ratio) - 1) < 0.1 else ratio
 
 
-def _taken_for_y(x: np.ndarray, z: np.ndarray) -> list[Finding]:
-    """A z that follows x as the link itself does."""
-    gain, _ = slow_gain(x, z) or (0.0, 0.0)
+def _taken_for_y(gains: list[Gain]) -> list[Finding]:
+    """A z that follows x as the link itself does; ``gains`` are those from x to z."""
+    gain, _ = slow_gain(gains) or (0.0, 0.0)
     if not 1 / LIKE_ONE < gain < LIKE_ONE:
         return []
     what = "follows x one to one in slow motion, as the link's own motion y does and relative motion z = y - x does not"
     return [Finding("absolute", ASK, "z", what, "--columns y=z", size=gain)]
 
 
-def _turned(x: np.ndarray, z: np.ndarray) -> list[Finding]:
-    """A z that grows against x with the frequency.
+def _turned(gains: list[Gain]) -> list[Finding]:
+    """A z that grows against x with the frequency; ``gains`` are those from x to z.
 
     Below the resonance z = y - x goes with x and grows as the square of the frequency. Above it, or where the link floats in its
     play, it goes against x but falls towards -x.
     """
-    bands = [(low, gain) for low, coherence, gain in _gains(x, z) if coherence > GOES_WITH and abs(np.angle(-gain)) < AGAINST]
+    bands = [(low, gain) for low, coherence, gain in gains if coherence > GOES_WITH and abs(np.angle(-gain)) < AGAINST]
     for (low, gain), (next_low, next_gain) in itertools.pairwise(bands):
         grows = abs(next_gain / gain)
         if next_low == 2 * low and GROWS[0] < grows < GROWS[1] and abs(next_gain) < 0.8:
@@ -136,13 +142,13 @@ def _turned(x: np.ndarray, z: np.ndarray) -> list[Finding]:
     return []
 
 
-def slow_gain(x: np.ndarray, y: np.ndarray) -> tuple[float, float] | None:
+def slow_gain(gains: list[Gain]) -> tuple[float, float] | None:
     """The factor by which y follows x in the slowest motion there is, and how well it is known; None where it does not follow.
 
     Two neighbouring bands of an octave, from the slowest on that holds a hundredth of x's power, must be coherent, in step, and
     show the same factor. The share by which they differ, at least `NEAR`, is what play and resonance leave open.
     """
-    bands = _gains(x, y)[:2]
+    bands = gains[:2]
     if len(bands) < 2 or bands[1][0] != 2 * bands[0][0]:
         return None
     for _, coherence, gain in bands:
@@ -155,7 +161,7 @@ def slow_gain(x: np.ndarray, y: np.ndarray) -> tuple[float, float] | None:
     return float(slow.real), max(NEAR, abs(float(next_.real / slow.real) - 1.0))
 
 
-def _gains(x: np.ndarray, y: np.ndarray) -> list[tuple[int, float, complex]]:
+def _gains(x: np.ndarray, y: np.ndarray) -> list[Gain]:
     """First line, coherence and gain from x to y of every octave that holds a hundredth of x's power."""
     size = min(x.size, SAMPLES)
     size -= size % FAST if size > 4 * FAST else 0

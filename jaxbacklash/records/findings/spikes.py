@@ -8,20 +8,8 @@ import numpy as np
 
 from jaxbacklash.records.finding import ASK, WARN, Finding
 
-from .local import (
-    POSITIONS,
-    SURPRISE_OF_NOISE,
-    around,
-    beyond,
-    bridge,
-    each,
-    level,
-    listed_rows,
-    positions,
-    quantum,
-    runs,
-    surprise,
-)
+from .channel import POSITIONS, Channel, each, positions
+from .local import SURPRISE_OF_NOISE, around, bridge, listed_rows, runs
 
 CLEAR = 20.0
 """Times what is usual around it that a spike is at least. The corner that an impact leaves in a position looks like a spike to 86
@@ -46,45 +34,47 @@ MOST = 0.05
 _NONE = np.zeros(0, dtype=int)
 
 
-def codes(channels: Mapping[str, np.ndarray]) -> list[Finding]:
+def codes(channels: Mapping[str, Channel]) -> list[Finding]:
     """Codes for failed readings, in every channel."""
     found = []
     for name, (rows, what) in each(code_rows, channels).items():
         if rows.size:
-            found.append(_bridged_or_asked("sentinel", name, channels[name], rows, f"hold{'s' if rows.size == 1 else ''} {what}"))
+            what = f"hold{'s' if rows.size == 1 else ''} {what}"
+            found.append(_bridged_or_asked("sentinel", name, channels[name].size, rows, what))
     return found
 
 
-def spikes(channels: Mapping[str, np.ndarray]) -> list[Finding]:
+def spikes(channels: Mapping[str, Channel]) -> list[Finding]:
     """Single samples that stand out, in x, y and z."""
     found = []
     for name, rows in each(spike_rows, positions(channels)).items():
         if rows.size:
             what = f"stand{'s' if rows.size == 1 else ''} out alone from the motion around"
-            found.append(_bridged_or_asked("spike", name, channels[name], rows, what))
+            found.append(_bridged_or_asked("spike", name, channels[name].size, rows, what))
     return found
 
 
-def _bridged_or_asked(kind: str, name: str, values: np.ndarray, rows: np.ndarray, what: str) -> Finding:
-    """A finding that bridges few samples of a position, and asks where they are many or a force's."""
+def _bridged_or_asked(kind: str, name: str, size: int, rows: np.ndarray, what: str) -> Finding:
+    """A finding that bridges few of the ``size`` samples of a position, and asks where they are many or a force's."""
     every = tuple(rows.tolist())
-    if name in POSITIONS and rows.size <= max(3, FEW * values.size):
+    if name in POSITIONS and rows.size <= max(3, FEW * size):
         what = f"{listed_rows(rows)} {what}; bridged by the samples around"
         return Finding(kind, WARN, name, what, rows=every, bridged=every)
     return Finding(kind, ASK, name, f"{listed_rows(rows)} {what}", f"--despike {name}", every)
 
 
-def bad_rows(values: np.ndarray) -> np.ndarray:
+def bad_rows(channel: Channel) -> np.ndarray:
     """Rows (from 0) that `--despike` replaces: codes, and spikes among what is left."""
-    rows = code_rows(values)[0]
-    return np.union1d(rows, spike_rows(bridge(values, rows)))
+    rows = code_rows(channel)[0]
+    return np.union1d(rows, spike_rows(Channel(bridge(channel.values, rows)) if rows.size else channel))
 
 
-def code_rows(values: np.ndarray) -> tuple[np.ndarray, str]:
+def code_rows(channel: Channel) -> tuple[np.ndarray, str]:
     """Rows of a value that stands for none: far beyond all others, or 0 between samples that are not near it."""
+    values = channel.values
     rows, first = _NONE, 0.0
     good = np.ones(values.size, dtype=bool)
-    for _ in range(3 if _reaches_out(values) else 0):  # -9999 and 9999 may both be there
+    for _ in range(3 if _reaches_out(channel) else 0):  # -9999 and 9999 may both be there
         kept = values[good]
         for code, rest in ((kept.max(), kept[kept < kept.max()]), (kept.min(), kept[kept > kept.min()])):
             if rest.size < (1.0 - MOST) * values.size:
@@ -101,16 +91,16 @@ def code_rows(values: np.ndarray) -> tuple[np.ndarray, str]:
             break
     if rows.size:
         return rows, f"{first:.6g}, far beyond all others: a reading that failed"
-    return _zeros(values), "exactly 0 between samples far from it: a reading that failed"
+    return _zeros(channel), "exactly 0 between samples far from it: a reading that failed"
 
 
-def _reaches_out(values: np.ndarray) -> bool:
+def _reaches_out(channel: Channel) -> bool:
     """Whether the largest or the smallest value may be a code.
 
     A quick look that misses none: some of the samples between them span no more than all of them do.
     """
-    some = values[:: max(1, values.size // 256)]
-    high, low = values.max(), values.min()
+    some = channel.values[:: max(1, channel.size // 256)]
+    high, low = channel.high, channel.low
     some = some[(some < high) & (some > low)]
     if not some.size:
         return True
@@ -118,8 +108,9 @@ def _reaches_out(values: np.ndarray) -> bool:
     return bool(max(high - top, bottom - low) > FAR_OUT * (top - bottom))
 
 
-def _zeros(values: np.ndarray) -> np.ndarray:
+def _zeros(channel: Channel) -> np.ndarray:
     """Rows of exactly 0 that their neighbours contradict; all such rows where a finely read channel has three of them."""
+    values = channel.values
     zero = values == 0.0
     count = np.count_nonzero(zero)
     if not 0 < count < MOST * values.size:
@@ -128,9 +119,10 @@ def _zeros(values: np.ndarray) -> np.ndarray:
     last = first + length - 1
     inside = (first >= 4) & (last < values.size - 4)
     first, last = first[inside], last[inside]
-    if not first.size:
-        return _NONE
     before, after = values[first - 1], values[last + 1]
+    same_side = before * after > 0
+    if not same_side.any():  # the channel passes 0
+        return _NONE
     steps = np.abs(np.diff(bridge(values, np.flatnonzero(zero))))
     near = np.arange(2, BESIDE)
     usual = np.maximum(
@@ -139,28 +131,30 @@ def _zeros(values: np.ndarray) -> np.ndarray:
     )
     usual = np.maximum(usual, np.abs(after - before) / (last - first + 2))
     nearest = np.minimum(np.abs(before), np.abs(after))
-    off = (before * after > 0) & (nearest > 2 * np.maximum(usual, quantum(values)))
+    off = same_side & (nearest > 2 * usual)
+    if not off.any():
+        return _NONE
+    off &= nearest > 2 * channel.quantum
     # A coarse encoder's noise is counts to and fro, and rests in between.
-    sure = off & (nearest > FROM_ZERO * np.maximum(usual, quantum(values)))
+    sure = off & (nearest > FROM_ZERO * np.maximum(usual, channel.quantum))
     # So finely read that hardly a crossing of zero hits it: then zeros that are not near it, and few others, are failed readings.
-    hits = np.count_nonzero(values[1:] * values[:-1] < 0) * quantum(values) / max(float(np.median(steps)), 1e-300)
+    hits = np.count_nonzero(values[1:] * values[:-1] < 0) * channel.quantum / max(float(np.median(steps)), 1e-300)
     if np.count_nonzero(off) >= 3 and hits < 0.1 * np.count_nonzero(off):
         sure = np.ones(first.size, dtype=bool)
     return np.concatenate([_NONE, *(np.arange(a, b + 1) for a, b in zip(first[sure], last[sure], strict=True))])
 
 
-def spike_rows(values: np.ndarray) -> np.ndarray:
+def spike_rows(channel: Channel) -> np.ndarray:
     """Rows (from 0) of samples that stand out of the motion, alone or a few near one another."""
-    r = surprise(values)
-    floor = level(r) * SURPRISE_OF_NOISE
-    rows = beyond(r, 0.4 * CLEAR * floor)
+    rows = channel.standing_out(0.4 * CLEAR)
     if not rows.size:
         return _NONE
-    floor = max(floor, 0.3 * quantum(values))
+    r = channel.surprises
+    floor = max(channel.noise * SURPRISE_OF_NOISE, 0.3 * channel.quantum)
     size = np.abs(r)
     rows = rows[size[rows] > 0.4 * CLEAR * floor]
-    rows = rows[(rows >= 4) & (rows < values.size - 4)]
-    if not rows.size or rows.size > 5 * MOST * values.size:
+    rows = rows[(rows >= 4) & (rows < channel.size - 4)]
+    if not rows.size or rows.size > 5 * MOST * channel.size:
         return _NONE
     usual = np.maximum(around(size, rows), floor)
     # At least the middle of a spike, six parts of nine of all that it leaves, is as clear as that.
@@ -169,7 +163,7 @@ def spike_rows(values: np.ndarray) -> np.ndarray:
         return _NONE
     found = [_spikes_of(r, cluster, floor) for cluster in np.split(rows, np.flatnonzero(np.diff(rows) > 4) + 1)]
     every = np.concatenate([_NONE, *found])
-    return every if every.size <= MOST * values.size else _NONE
+    return every if every.size <= MOST * channel.size else _NONE
 
 
 def _spikes_of(r: np.ndarray, cluster: np.ndarray, floor: float) -> np.ndarray:

@@ -1,0 +1,165 @@
+"""One channel as the checks see it: what several of them need of it is worked out once, when the first asks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Generic, TypeVar, overload
+
+import numpy as np
+
+from jaxbacklash.side_by_side import side_by_side
+
+from .local import EVERY, RANKS, SHARE, SURPRISE_OF_NOISE, beyond, common_step, level, surprise
+
+POSITIONS = ("x", "y", "z")
+"""Channels of things that have mass, and so neither jump nor stand out for a single sample; forces may."""
+
+LONG = 200_000
+"""Samples from which on a channel is worth a core of its own."""
+
+Value = TypeVar("Value")
+Found = TypeVar("Found")
+
+
+class once(Generic[Value]):
+    """A property that is worked out when it is first asked for.
+
+    As `functools.cached_property`, of which Python 3.11 works out one at a time, whatever it belongs to: channels are looked
+    through side by side.
+    """
+
+    def __init__(self, work: Callable[[Any], Value]):
+        self.work, self.__doc__ = work, work.__doc__
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    @overload
+    def __get__(self, one: None, owner: type) -> once[Value]: ...
+    @overload
+    def __get__(self, one: object, owner: type) -> Value: ...
+    def __get__(self, one, owner):
+        if one is None:
+            return self
+        value = one.__dict__[self.name] = self.work(one)
+        return value
+
+
+class Channel:
+    """The values of one channel and what checks ask of them.
+
+    Parameters
+    ----------
+    values : array of shape (N,)
+        Finite, at even steps of time, N >= 5, in any unit; that of all that is worked out of them. They must not change.
+
+    Examples
+    --------
+    >>> Channel(np.array([0.0, 0.5, 0.5, 1.5, 3.0, 2.0])).quantum
+    0.5
+    """
+
+    def __init__(self, values: np.ndarray):
+        self.values = values
+
+    @property
+    def size(self) -> int:
+        """N."""
+        return self.values.size
+
+    @once
+    def low(self) -> float:
+        """The smallest value."""
+        return float(self.values.min())
+
+    @once
+    def high(self) -> float:
+        """The largest value."""
+        return float(self.values.max())
+
+    @property
+    def span(self) -> float:
+        """From the smallest value to the largest."""
+        return self.high - self.low
+
+    @once
+    def steps(self) -> np.ndarray:
+        """From each value to the next, shape (N - 1,)."""
+        return np.diff(self.values)
+
+    @once
+    def longest(self) -> float:
+        """The size of the largest step."""
+        return max(float(self.steps.max()), -float(self.steps.min()))
+
+    @once
+    def rests(self) -> np.ndarray:
+        """Whether the next value is the same, shape (N - 1,)."""
+        return self.steps == 0.0
+
+    @once
+    def repeats(self) -> int:
+        """How many values are the same as the one before."""
+        return int(np.count_nonzero(self.rests))
+
+    @once
+    def surprises(self) -> np.ndarray:
+        """What `local.surprise` gives, shape (N,)."""
+        return surprise(self.values)
+
+    @once
+    def noise(self) -> float:
+        """Standard deviation of the noise, see `local.level`."""
+        return level(self.surprises)
+
+    def standing_out(self, times: float) -> np.ndarray:
+        """Rows (from 0) whose surprise is more than ``times`` the standard deviation of the noise's own."""
+        most = max(float(self.surprises.max()), -float(self.surprises.min()))
+        some = self.surprises[:: max(1, self.size // EVERY)]
+        # Where more than half of them are so large, so is their median, which takes ten times as long to find.
+        if np.count_nonzero(np.abs(some) > 0.6745 * most / times) > some.size // 2:
+            return np.zeros(0, dtype=int)
+        return beyond(self.surprises, times * SURPRISE_OF_NOISE * self.noise)
+
+    @once
+    def _moved(self) -> np.ndarray:
+        """Sizes of the first steps that are more than the rounding of the values, in the order of the rows."""
+        steps = np.abs(self.steps[: EVERY - 1])
+        return steps[steps > 1e-12 * max(abs(self.high), abs(self.low))]
+
+    @once
+    def quantum(self) -> float:
+        """What it is counted in: the step of which its smaller steps are multiples.
+
+        Where they are multiples of none, nothing is counted that matters: the smallest step, or a thousandth of the usual one.
+        For a constant 0.
+        """
+        steps = np.sort(self._moved)
+        if not steps.size:
+            return 0.0
+        count = common_step(steps)
+        return min(1e-3 * float(np.median(steps)), float(steps[0])) if count is None else count
+
+    def is_finer(self, limit: float) -> bool:
+        """Whether `quantum` is less than ``limit``."""
+        steps = self._moved
+        # One of the smallest steps is taken: where more are below the limit, it need not be known.
+        small = int(np.count_nonzero(steps < limit))
+        return small > max(RANKS[-1], steps.size // SHARE) or bool(self.quantum < limit)
+
+
+def by_name(channels: Mapping[str, np.ndarray]) -> dict[str, Channel]:
+    """Arrays of shape (N,) by name as channels."""
+    return {name: Channel(values) for name, values in channels.items()}
+
+
+def positions(channels: Mapping[str, Channel]) -> dict[str, Channel]:
+    """The channels that are `POSITIONS`, in their order."""
+    return {name: channels[name] for name in POSITIONS if name in channels}
+
+
+def each(work: Callable[[Channel], Found], channels: Mapping[str, Channel]) -> dict[str, Found]:
+    """What ``work`` finds in each channel; in long ones side by side."""
+    longest = max((channel.size for channel in channels.values()), default=0)
+    found = side_by_side(work, channels.values()) if longest > LONG else map(work, channels.values())
+    return dict(zip(channels, found, strict=True))
