@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jaxbacklash.records.findings.channel import Channel
-from jaxbacklash.records.findings.held import stale_rows
+from jaxbacklash.records.findings.held import _of_like_size, stale_rows
 
 
 def written(noise, digits, significant, seed):
@@ -33,3 +33,13 @@ def test_more_repeats_than_chance_brings_are_stale(significant):
     rows = np.arange(50, z.size - 50, 500)
     z[rows] = z[rows - 1]
     assert np.isin(rows, stale_rows(Channel(z))).mean() > 0.95
+
+
+@pytest.mark.parametrize("groups", [1, 2, 7])
+def test_groups_of_like_size_part_all_samples_and_begin_with_that_of_one(groups):
+    size = np.random.default_rng(3).permutation(200) / 10.0
+    for one in (int(np.argmin(size)), int(np.argmax(size)), 17):
+        found = list(_of_like_size(size, groups, one))
+        assert one in found[0]
+        expected = np.array_split(np.argsort(size), groups)
+        assert {tuple(sorted(group)) for group in found} == {tuple(sorted(group)) for group in expected}

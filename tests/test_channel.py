@@ -41,6 +41,16 @@ def test_a_channel_is_finer_than_a_limit_as_its_quantum_is(kind, seed):
 
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("size", [3999, 4000])
+def test_a_channel_is_quieter_than_a_limit_as_its_noise_is(kind, seed, size):
+    values = values_of(kind, seed)[:size]
+    noise = level(surprise(values))
+    for limit in (0.0, 0.9 * noise, 1.1 * noise, 3.0 * noise, 1.0):
+        assert Channel(values).is_quieter(limit) == (noise < limit)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("seed", range(3))
 def test_the_rows_that_stand_out_are_those_beyond_the_median(kind, seed):
     values = values_of(kind, seed)
     size = np.abs(surprise(values))

@@ -9,7 +9,7 @@ import numpy as np
 from jaxbacklash.records.finding import ASK, REFUSE, WARN, Finding
 
 from .channel import Channel
-from .local import EVERY, SURPRISE_OF_NOISE, level
+from .local import EVERY, SURPRISE_OF_NOISE
 
 LEVELS = 3
 """Values up to which a channel is below its own resolution."""
@@ -123,11 +123,15 @@ def _driven(channel: Channel, name: str) -> list[Finding]:
 def _stale_first(channel: Channel, name: str) -> list[Finding]:
     """First rows that repeat one value, until the channel goes on at full speed."""
     values, surprises = channel.values, channel.surprises
-    noise = level(surprises[:EVERY]) if channel.size > EVERY else channel.noise
-    if not channel.is_finer(noise / 0.3):
-        noise = max(noise, 0.3 * channel.quantum)
-    still = np.abs(values[: FIRST + 2] - values[0]) < 5 * noise
-    if still.all() or values.size < 4 * FIRST:
+    if values.size < 4 * FIRST:
+        return []
+    start = channel if channel.size <= EVERY else Channel(values[:EVERY])
+    moved = np.abs(values[: FIRST + 2] - values[0])
+    if start.is_quieter(moved[1] / 5) and channel.is_finer(moved[1] / 1.5):
+        return []  # at speed from the first row on
+    noise = max(start.noise, 0.3 * channel.quantum)
+    still = moved < 5 * noise
+    if still.all():
         return []
     last = int(np.argmin(still)) - 1  # the last row that is still
     if not 1 <= last <= FIRST:

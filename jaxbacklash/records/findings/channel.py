@@ -9,7 +9,7 @@ import numpy as np
 
 from jaxbacklash.side_by_side import side_by_side
 
-from .local import EVERY, RANKS, SHARE, SURPRISE_OF_NOISE, beyond, common_step, level, surprise
+from .local import EVERY, MEDIAN, RANKS, SHARE, SURPRISE_OF_NOISE, common_step, level, surprise, within
 
 POSITIONS = ("x", "y", "z")
 """Channels of things that have mass, and so neither jump nor stand out for a single sample; forces may."""
@@ -112,20 +112,28 @@ class Channel:
         """Standard deviation of the noise, see `local.level`."""
         return level(self.surprises)
 
+    @once
+    def largest_surprise(self) -> float:
+        """The size of the largest surprise."""
+        return max(float(self.surprises.max()), -float(self.surprises.min()))
+
+    def is_quieter(self, limit: float) -> bool:
+        """Whether `noise` is less than ``limit``."""
+        some = self.surprises[:: max(1, self.size // EVERY)]
+        less = 2 * within(some, limit * MEDIAN * SURPRISE_OF_NOISE)
+        # Where that is so of more than half of them, it is so of their median, which takes ten times as long to find.
+        return less > some.size or (less == some.size and self.noise < limit)
+
     def standing_out(self, times: float) -> np.ndarray:
         """Rows (from 0) whose surprise is more than ``times`` the standard deviation of the noise's own."""
-        most = max(float(self.surprises.max()), -float(self.surprises.min()))
-        some = self.surprises[:: max(1, self.size // EVERY)]
-        # Where more than half of them are so large, so is their median, which takes ten times as long to find.
-        if np.count_nonzero(np.abs(some) > 0.6745 * most / times) > some.size // 2:
+        if not self.is_quieter(self.largest_surprise / (times * SURPRISE_OF_NOISE)):
             return np.zeros(0, dtype=int)
-        return beyond(self.surprises, times * SURPRISE_OF_NOISE * self.noise)
+        return np.flatnonzero(np.abs(self.surprises) > times * SURPRISE_OF_NOISE * self.noise)
 
-    @once
-    def _moved(self) -> np.ndarray:
-        """Sizes of the first steps that are more than the rounding of the values, in the order of the rows."""
-        steps = np.abs(self.steps[: EVERY - 1])
-        return steps[steps > 1e-12 * max(abs(self.high), abs(self.low))]
+    @property
+    def rounding(self) -> float:
+        """What a step of nothing may come to in double precision."""
+        return 1e-12 * max(abs(self.high), abs(self.low))
 
     @once
     def quantum(self) -> float:
@@ -134,7 +142,8 @@ class Channel:
         Where they are multiples of none, nothing is counted that matters: the smallest step, or a thousandth of the usual one.
         For a constant 0.
         """
-        steps = np.sort(self._moved)
+        steps = np.abs(self.steps[: EVERY - 1])
+        steps = np.sort(steps[steps > self.rounding])
         if not steps.size:
             return 0.0
         count = common_step(steps)
@@ -142,9 +151,9 @@ class Channel:
 
     def is_finer(self, limit: float) -> bool:
         """Whether `quantum` is less than ``limit``."""
-        steps = self._moved
+        steps = self.steps[: EVERY - 1]
         # One of the smallest steps is taken: where more are below the limit, it need not be known.
-        small = int(np.count_nonzero(steps < limit))
+        small = within(steps, limit) - within(steps, self.rounding)
         return small > max(RANKS[-1], steps.size // SHARE) or bool(self.quantum < limit)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from jaxbacklash.records.finding import ASK, WARN, Finding
 
 from .channel import Channel, each
-from .local import EVERY, SURPRISE_OF_NOISE, common_step, listed_rows, runs
+from .local import EVERY, MEDIAN, SURPRISE_OF_NOISE, common_step, listed_rows, runs
 
 HELD_ROWS = 4
 """Equal rows from which on they count as filled with the last one, where they end in a jump."""
@@ -138,10 +138,10 @@ def _by_size(channel: Channel, enough: float) -> tuple[float, float]:
         rows = np.flatnonzero(steps <= np.quantile(some, EVERY / steps.size))
         steps, before, after = steps[rows], before[rows], after[rows]
     size = np.maximum(np.abs(before), np.abs(after))
+    # Where the smallest step of all is, there single counts are likely.
+    smallest = int(np.argmin(np.where(steps > 0.0, steps, np.inf)))
     coarsest, repeats = 0.0, 0.0
-    for group in _of_like_size(size, min(max(steps.size // FEWEST, 1), GROUPS)):
-        if repeats > enough:
-            break
+    for group in _of_like_size(size, min(max(steps.size // FEWEST, 1), GROUPS), smallest):
         found = steps[group]
         found = np.sort(found[found > 1e-12 * size[group].max()])
         count = common_step(found)
@@ -149,26 +149,28 @@ def _by_size(channel: Channel, enough: float) -> tuple[float, float]:
             coarsest = max(coarsest, count)
             # Steps of a single count to and fro are twice as many as those of none.
             repeats += np.count_nonzero(found < 1.5 * count) / 2
+            if repeats > enough:
+                break
     return coarsest, repeats
 
 
-def _of_like_size(size: np.ndarray, groups: int) -> Iterator[np.ndarray]:
-    """Places in ``size`` (N,) in as many groups, the smallest first; the others are only sorted when they are asked for."""
-    if groups > 1:
-        first = -(-size.size // groups)
-        order = np.argpartition(size, first)
-        yield order[:first]
-        rest = order[first:]
-        yield from np.array_split(rest[np.argsort(size[rest])], groups - 1)
-    else:
-        yield np.arange(size.size)
+def _of_like_size(size: np.ndarray, groups: int, one: int) -> Iterator[np.ndarray]:
+    """Places in ``size`` (N,) in as many groups of like size, that of ``one`` first; the rest is sorted if asked for."""
+    ends = np.cumsum([0, *(part.size for part in np.array_split(size, groups))])
+    at = int(np.searchsorted(ends, np.count_nonzero(size < size[one]), side="right")) - 1
+    low, high = ends[at], ends[at + 1]
+    order = np.argpartition(size, [end for end in (low, high) if end < size.size])
+    yield order[low:high]
+    for places, others in ((order[:low], at), (order[high:], groups - at - 1)):
+        if others:
+            yield from np.array_split(places[np.argsort(size[places])], others)
 
 
 def _quietest(channel: Channel) -> float:
     """The noise of a channel where it moves least: the lowest tenth of its stretches."""
     blocks = channel.surprises[: channel.size // BLOCK * BLOCK].reshape(-1, BLOCK)
     blocks = np.abs(blocks[:: max(1, channel.size // EVERY), 2:-2])
-    return float(np.quantile(np.median(blocks, axis=1), 0.1)) / (0.6745 * SURPRISE_OF_NOISE)
+    return float(np.quantile(np.median(blocks, axis=1), 0.1)) / (MEDIAN * SURPRISE_OF_NOISE)
 
 
 def _overtaken(values: np.ndarray, small: np.ndarray, count: float) -> np.ndarray:

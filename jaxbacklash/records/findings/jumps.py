@@ -9,7 +9,7 @@ import numpy as np
 from jaxbacklash.records.finding import ASK, REFUSE, Finding
 
 from .channel import Channel, each, positions
-from .local import SURPRISE_OF_NOISE, around, beyond
+from .local import SURPRISE_OF_NOISE, around
 
 TURNS = {2 * np.pi: "2 pi", np.pi: "pi", 360.0: "360", 180.0: "180"}
 """Where angles begin anew, in rad and degrees."""
@@ -59,7 +59,7 @@ def turn_of(channel: Channel, known: bool = False) -> tuple[float, np.ndarray] |
     if channel.longest <= 0.4 * span:
         return None
     steps = channel.steps
-    rows = beyond(steps, 0.4 * span)
+    rows = np.flatnonzero(np.abs(steps) > 0.4 * span)
     if rows.size > steps.size / 2:
         return None
     jumping = np.zeros(steps.size, dtype=bool)

@@ -9,6 +9,9 @@ import numpy as np
 SURPRISE_OF_NOISE = 1.39
 """Standard deviation of `surprise` under white noise of standard deviation 1."""
 
+MEDIAN = 0.6745
+"""Median of the size of white noise of standard deviation 1."""
+
 EVERY = 65536
 """Samples from which a level is taken: its error is under a percent, and a long record costs no more."""
 _PIECE = 16384
@@ -38,17 +41,15 @@ def surprise(values: np.ndarray) -> np.ndarray:
     return out
 
 
-def beyond(values: np.ndarray, limit: float) -> np.ndarray:
-    """Rows (from 0) of values (N,) whose size exceeds ``limit``."""
-    if max(float(values.max()), -float(values.min())) <= limit:
-        return np.zeros(0, dtype=int)
-    return np.flatnonzero(np.abs(values) > limit)
+def within(values: np.ndarray, limit: float) -> int:
+    """How many values (N,) are less than ``limit`` in size."""
+    return int(np.count_nonzero((values < limit) & (values > -limit)))
 
 
 def level(surprises: np.ndarray) -> float:
     """Standard deviation of a channel's noise by the median of its surprises; too high where the motion is coarsely sampled."""
     some = surprises[:: max(1, surprises.size // EVERY)]
-    return float(np.median(np.abs(some))) / (0.6745 * SURPRISE_OF_NOISE)
+    return float(np.median(np.abs(some))) / (MEDIAN * SURPRISE_OF_NOISE)
 
 
 def around(size: np.ndarray, rows: np.ndarray, near: int = 4, far: int = 20, share: float = 0.8) -> np.ndarray:

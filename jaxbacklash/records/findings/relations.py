@@ -165,9 +165,8 @@ def _gains(x: np.ndarray, y: np.ndarray) -> list[Gain]:
     """First line, coherence and gain from x to y of every octave that holds a hundredth of x's power."""
     size = min(x.size, SAMPLES)
     size -= size % FAST if size > 4 * FAST else 0
-    x, y = (values[:size] - np.mean(values[:size]) for values in (x, y))
-    window = np.hanning(x.size)
-    fx, fy = np.fft.rfft(window * x), np.fft.rfft(window * y)
+    window = np.hanning(size)
+    fx, fy = (np.fft.rfft(window * (values[:size] - np.mean(values[:size]))) for values in (x, y))
     power, other = np.abs(fx) ** 2, np.abs(fy) ** 2
     least = 0.01 * float(np.sum(power[2:]))
     found = []
