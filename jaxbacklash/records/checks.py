@@ -79,9 +79,10 @@ def _row(row: int) -> str:
 
 def finite(values: np.ndarray, name: str, where: str, place: Callable[[int], str] = _row) -> None:
     """Refuse NaN and infinity, naming the first row that has one; ``place`` says how a row (from 0) is named."""
-    bad = np.flatnonzero(~np.isfinite(values))
-    if not bad.size:
+    known = np.isfinite(values)
+    if known.all():
         return
+    bad = np.flatnonzero(~known)
     more = f" ({bad.size} such rows)" if bad.size > 1 else ""
     missing = bool(np.isnan(values[bad]).all())
     found = f"{'no number' if missing else values[bad[0]]} at {place(int(bad[0]))}{more}"
@@ -94,10 +95,10 @@ def of_computable_size(values: np.ndarray, name: str, where: str, most: float = 
     """Refuse values (N,), finite, that are larger than ``most`` in size, or of a range below its inverse: no measurement in SI
     units is, and no fit can compute with them."""
     cure = "a measurement in SI units; is the unit right? convert with --unit or --scale"
-    largest = float(np.max(np.abs(values)))
+    low, high = float(values.min()), float(values.max())
+    largest, extent = max(-low, high), high - low
     if largest > most:
         raise wrong(f"{where}, column {name}", f"values of up to {number(largest)} in size", f"at most {most:g}, {cure}")
-    extent = float(np.ptp(values))
     if 0.0 < extent < 1.0 / most:
         raise wrong(f"{where}, column {name}", f"a range of {number(extent)}", f"at least {1.0 / most:g}, {cure}")
 

@@ -51,12 +51,13 @@ def uniform_grid(t: np.ndarray) -> np.ndarray | None:
     rows -= (t.size - 1) / 2
     since = t - t[0]
     square = float(t.size) * (float(t.size) ** 2 - 1.0) / 12.0  # rows @ rows
-    step = float(rows @ since) / square
+    # By einsum, not by BLAS: its threads may wait for each other far longer than this takes.
+    step = float(np.einsum("i,i", rows, since)) / square
     error = step * rows
     np.subtract(since, error, out=error)  # in place: a new array of a million takes longer to get than to fill
     # Once more on what is left: over millions of rows the first slope carries the rounding of its own sums.
     error -= error.mean()
-    step += float(rows @ error) / square
+    step += float(np.einsum("i,i", rows, error)) / square
     np.subtract(since, np.multiply(step, rows, out=error), out=error)
     low, high = error.min(), error.max()
     middle, worst = (high + low) / 2, (high - low) / 2
@@ -104,9 +105,9 @@ def _roundings(t: np.ndarray, steps: np.ndarray) -> Iterator[float]:
 
 def increasing(t: np.ndarray, where: str) -> None:
     """Refuse times that go back or stand still, naming the first two rows (counted from 1) that do."""
-    stuck = np.flatnonzero(np.diff(t) <= 0)
-    if stuck.size:
-        row = stuck[0]
+    stuck = np.diff(t) <= 0
+    if stuck.any():
+        row = int(np.argmax(stuck))
         what = "stays at" if t[row + 1] == t[row] else "goes back to"
         found = f"that {t[row]:.9g} s at row {row + 1} {what} {t[row + 1]:.9g} s at row {row + 2}"
         raise wrong(f"{where}, column t", found, "strictly increasing times")

@@ -90,7 +90,9 @@ def seconds(values: np.ndarray, unit: str, where: str, name: str) -> tuple[np.nd
     values = np.asarray(values)
     if values.dtype.kind in "UST":
         return _of_text(values.astype(str), unit, where, name)
-    known = values[np.isfinite(values)] if values.dtype.kind == "f" else values
+    known = values
+    if values.dtype.kind == "f" and not (finite := np.isfinite(values)).all():
+        known = values[finite]
     if known.size < 2:
         return values, ""
     count = _count(known, unit)
