@@ -74,6 +74,23 @@ def test_an_odd_cell_is_read_as_by_lines_or_handed_on(laid, bad, monkeypatch):
         assert found[1:] == expected[1:]
 
 
+@pytest.mark.parametrize("every", [2, 3, ROWS - 1])
+def test_lines_that_end_another_way_than_most_are_not_cut_off(laid, every):
+    lines = written(cells("%.6f")).split(b"\n")
+    ends = [b"\r" if number % every == 0 else b"\n" for number in range(1, len(lines))]
+    layout = laid(b"".join(line + end for line, end in zip(lines, [b"\n", *ends], strict=True)))
+    values, _ = plain._at_once(layout)
+    assert same(values, plain._by_lines(layout, False)[0])
+    assert len(values) == ROWS
+
+
+def test_blank_lines_are_not_told_of(laid, recwarn):
+    rows = cells("%.6f")
+    rows[150:150] = [[""], [""]]
+    assert len(plain._at_once(laid(written(rows)))[0]) == ROWS
+    assert not recwarn.list
+
+
 def test_rows_between_blanks_and_comments_keep_their_lines(laid):
     rows = cells("%.6f")
     rows[100:100] = [[""], ["# a remark"]]

@@ -21,10 +21,12 @@ BLANKS = " \u00a0\u2009\u202f"
 """A blank, one that does not break, and two thin ones: marks of thousands in some languages."""
 
 _TEXT_MARKS = frozenset("'=")
+_NOT_PLAIN = re.compile('["\r\n]')
+"""What makes a line one for the csv module, which takes five times as long as `str.split`."""
 _DIGITS = re.compile(
     r"[-+\u2212]?(?:"
-    r"\d{1,3}(?:[ '\u2019.,\u00a0\u2009\u202f]\d{3})+(?:[.,]\d+)?"  # 1 234,5
-    r"|(?:\d+\.?|\d*[.,]\d+)(?:[eEdD][-+\u2212]?\d+)?"  # 1.5D-03
+    r"(?:\d+(?:[.,]\d+|\.)?|[.,]\d+)(?:[eEdD][-+\u2212]?\d+)?"  # 1.5D-03; the commonest comes first
+    r"|\d{1,3}(?:[ '\u2019.,\u00a0\u2009\u202f]\d{3})+(?:[.,]\d+)?"  # 1 234,5
     r")"
 )
 _INFINITE = re.compile(r"[-+]?(?:inf(?:inity)?|1\.#inf)", re.IGNORECASE)
@@ -75,6 +77,8 @@ def split(line: str, separator: str | None) -> list[str]:
         line, separator = line.replace("\t", " ").strip(), " "
     elif separator == "|":
         line = unframed(line)
+    if line and not _NOT_PLAIN.search(line):
+        return [cell.strip() for cell in line.split(separator)]
     try:
         return [cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True), [])]
     except csv.Error:

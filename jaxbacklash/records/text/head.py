@@ -142,11 +142,25 @@ class Head:
             runs.append(Run(separator, first, last, form, values))
         return runs
 
+    def cells_at_most(self, separator: str | None) -> int:
+        """Cells that are not empty in all lines, or somewhat more; none where the separator is in no line."""
+        if separator is None:
+            return sum(len(line.text.split()) for line in self.lines)
+        marks = sum(line.text.count(separator) for line in self.lines)
+        return marks + len(self.lines) if marks else 0
+
     def best(self, separators: tuple[str | None, ...]) -> Run | None:
         """The run that looks most like a table, and of equal ones that of the separator named first."""
-        present = [mark for mark in separators if mark is None or any(mark in line.text for line in self.lines)]
-        found = [max(runs, key=lambda run: run.score) for mark in present if (runs := self.runs(mark))]
-        most = max((run.score for run in found), default=0.0)
+        found: list[Run] = []
+        most = 0.0
+        for mark in separators:
+            # As many cells cannot be enough, even if all were values: the lines are not cut for that.
+            if self.cells_at_most(mark) < max(ENOUGH * most, 1):
+                continue
+            runs = self.runs(mark)
+            if runs:
+                found.append(max(runs, key=lambda run: run.score))
+                most = max(most, found[-1].score)
         # "0,5" below "z" is one number: a run with a header of its own width is taken before one of twice the numbers.
         near = [run for run in found if run.score >= ENOUGH * most]
         return max(near, key=lambda run: (self.fits_above(run), round(run.score, 6)), default=None)

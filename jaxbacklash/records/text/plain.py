@@ -6,6 +6,7 @@ It gives up (returns None) at anything else, and `by_cell` reads the file again.
 from __future__ import annotations
 
 import itertools
+import warnings
 from collections.abc import Iterable, Iterator
 from typing import TextIO
 
@@ -81,18 +82,31 @@ def _at_once(layout: Layout) -> tuple[np.ndarray, int] | None:
     source = layout.source
     if source.gzip or source.encoding not in ASCII or layout.quoted or source.path.suffix.lower() in PACKED_SUFFIXES:
         return None
+    last = source.last_line()
+    # One more than there should be, so that none is cut off unseen: a line that ends in CR among others in LF is not counted.
+    most = max(last - layout.first_line + 2, 1)
     try:
-        values = np.loadtxt(
-            str(source.path),
+        values = _opened(layout, most)
+        if len(values) == most:
+            values = _opened(layout, None)
+    except UnicodeDecodeError:
+        return None
+    return values, last
+
+
+def _opened(layout: Layout, most: int | None) -> np.ndarray:
+    """The first ``most`` rows of a file that NumPy opens: where it knows how many come, it takes memory for them once."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Input line")  # A blank one, which it tells of where the rows are limited.
+        return np.loadtxt(
+            str(layout.source.path),
             delimiter=layout.separator,
             comments="#",
             ndmin=2,
-            encoding=source.encoding,
+            encoding=layout.source.encoding,
             skiprows=layout.first_line - 1,
+            max_rows=most,
         )
-    except UnicodeDecodeError:
-        return None
-    return values, source.last_line()
 
 
 def _by_lines(layout: Layout, comma: bool) -> tuple[np.ndarray, int]:
