@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jaxbacklash.records.findings.channel import Channel
-from jaxbacklash.records.findings.held import _of_like_size, stale_rows
+from jaxbacklash.records.findings.held import _at_least, _by_size, stale_rows
 
 
 def written(noise, digits, significant, seed):
@@ -35,11 +35,27 @@ def test_more_repeats_than_chance_brings_are_stale(significant):
     assert np.isin(rows, stale_rows(Channel(z))).mean() > 0.95
 
 
-@pytest.mark.parametrize("groups", [1, 2, 7])
-def test_groups_of_like_size_part_all_samples_and_begin_with_that_of_one(groups):
-    size = np.random.default_rng(3).permutation(200) / 10.0
-    for one in (int(np.argmin(size)), int(np.argmax(size)), 17):
-        found = list(_of_like_size(size, groups, one))
-        assert one in found[0]
-        expected = np.array_split(np.argsort(size), groups)
-        assert {tuple(sorted(group)) for group in found} == {tuple(sorted(group)) for group in expected}
+
+@pytest.mark.parametrize("significant", [True, False], ids=["digits", "decimals"])
+@pytest.mark.parametrize("digits", [3, 4, 6])
+@pytest.mark.parametrize("tail", [0.0, 0.002, 0.2])
+@pytest.mark.parametrize("rows", [80, 2500, 70_000])
+def test_repeats_by_chance_are_not_fewer_than_the_quick_look_promises(significant, digits, tail, rows):
+    """Also where some steps are far larger than the others, or many samples rest."""
+    rng = np.random.default_rng([digits, rows])
+    steps = rng.normal(size=rows) * np.where(rng.random(rows) < tail, 30.0, 1.0)
+    z = np.cumsum(steps) * 1e-4 - 0.003
+    z[rows // 3 : rows // 2] = z[rows // 3]
+    decimals = digits - 1 - np.floor(np.log10(np.abs(z))) if significant else digits
+    channel = Channel(np.round(z * 10.0**decimals) / 10.0**decimals)
+    coarsest, _ = _by_size(channel)
+    count = max(channel.quantum, coarsest)
+    size = np.abs(channel.steps)
+    assert _at_least(channel) <= np.count_nonzero((size > 0.5 * count) & (size < 1.5 * count)) / 2
+
+
+def test_the_quick_look_counts_the_steps_near_the_rarest_count():
+    counts = np.repeat([0.0, 1.0, 2.0, 3.0, 900.0], [40, 1000, 50, 1200, 5])
+    steps = np.random.default_rng(1).permutation(counts) * np.resize([1.0, -1.0], counts.size)
+    # Two counts a step are rarest but for the five leaps, which no samples of like size have throughout.
+    assert _at_least(Channel(np.cumsum(steps))) == 25.0

@@ -136,18 +136,27 @@ class Channel:
         return 1e-12 * max(abs(self.high), abs(self.low))
 
     @once
-    def quantum(self) -> float:
-        """What it is counted in: the step of which its smaller steps are multiples.
-
-        Where they are multiples of none, nothing is counted that matters: the smallest step, or a thousandth of the usual one.
-        For a constant 0.
-        """
+    def _moved(self) -> np.ndarray:
+        """Sizes of the first steps that are more than the rounding of the values, in the order of the rows."""
         steps = np.abs(self.steps[: EVERY - 1])
-        steps = np.sort(steps[steps > self.rounding])
-        if not steps.size:
-            return 0.0
-        count = common_step(steps)
-        return min(1e-3 * float(np.median(steps)), float(steps[0])) if count is None else count
+        return steps[steps > self.rounding]
+
+    @once
+    def count(self) -> float | None:
+        """The step of which its smaller steps are multiples; None where they are multiples of none."""
+        return common_step(self._moved)
+
+    @once
+    def quantum(self) -> float:
+        """What it is counted in.
+
+        Where there is no `count`, nothing is counted that matters: the smallest step, or a thousandth of the usual one. For a
+        constant 0.
+        """
+        if self.count is not None:
+            return self.count
+        steps = self._moved
+        return min(1e-3 * float(np.median(steps)), float(steps.min())) if steps.size else 0.0
 
     def is_finer(self, limit: float) -> bool:
         """Whether `quantum` is less than ``limit``."""

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
 from jaxbacklash.records.finding import ASK, WARN, Finding
 
 from .channel import Channel, each
-from .local import EVERY, MEDIAN, SURPRISE_OF_NOISE, common_step, listed_rows, runs
+from .local import EVERY, MEDIAN, RANKS, SURPRISE_OF_NOISE, common_step, listed_rows, runs
 
 HELD_ROWS = 4
 """Equal rows from which on they count as filled with the last one, where they end in a jump."""
@@ -103,12 +103,11 @@ def stale_rows(channel: Channel, every: int | None = None) -> np.ndarray:
     still = np.flatnonzero(rests)[np.repeat(length < HELD_ROWS, length)] + 1
     if still.size < FEW_STALE or still.size > MOST * values.size or (every or refreshed_every(channel)) > 1:
         return none
-    # More repeats by chance than this, and there are too few to be called stale, unless the motion overtakes them.
-    most = (still.size - FEW_STALE) / BY_CHANCE
-    overtaken = _overtaken(values, rests, 0.0).size >= FEW_STALE
-    coarsest, repeats = _by_size(channel, np.inf if overtaken else most)
-    if repeats > most and not overtaken:
+    # Whatever the count turns out to be, it is not less than the quantum: so most channels need not be sorted by size.
+    overtaken = _overtaken(values, rests, channel.quantum).size >= FEW_STALE
+    if not overtaken and still.size < FEW_STALE + BY_CHANCE * _at_least(channel):
         return none
+    coarsest, repeats = _by_size(channel)
     count = max(channel.quantum, coarsest)
     size = np.abs(channel.steps)
     single = (size > 0.5 * count) & (size < 1.5 * count)
@@ -125,11 +124,31 @@ def stale_rows(channel: Channel, every: int | None = None) -> np.ndarray:
     return rows if rows.size >= FEW_STALE + BY_CHANCE * expected else none
 
 
-def _by_size(channel: Channel, enough: float) -> tuple[float, float]:
+def _at_least(channel: Channel) -> float:
+    """The fewest repeats that counting brings by chance, whatever count `_by_size` would find: half as many as steps near it.
+
+    That count is a step of the channel and not smaller than its quantum, and in some group hardly any step is smaller than it.
+    Near it are at least the steps in its own half of an octave and in the half below.
+    """
+    if channel.count is None:
+        return 0.0
+    steps = np.abs(channel.steps)
+    # The first 13 bits of a number in double precision are its sign, its octave and the half of that.
+    half = np.append(steps[steps > 0.0], channel.count).view(np.int64) >> 51
+    first = int(half.min())
+    found = np.bincount(half - first)
+    found[half[-1] - first] -= 1
+    near = found + np.append(0, found[:-1])
+    not_smaller = np.cumsum(found[::-1])[::-1]
+    may_be = (found > 0) & (not_smaller >= min(FEWEST, steps.size) - channel.repeats - RANKS[-1])
+    may_be[: half[-1] - first] = False
+    return float(near[may_be].min()) / 2 if may_be.any() else 0.0
+
+
+def _by_size(channel: Channel) -> tuple[float, float]:
     """The coarsest count of any group of samples of like size, and the repeats that counting brings by chance in all of them.
 
-    Zero where the steps are multiples of none: then too few of them are small for a repeat by chance. Once the repeats are more
-    than ``enough``, further groups are not looked at.
+    Zero where the steps are multiples of none: then too few of them are small for a repeat by chance.
     """
     steps, before, after = np.abs(channel.steps), channel.values[:-1], channel.values[1:]
     if steps.size > EVERY:
@@ -138,32 +157,16 @@ def _by_size(channel: Channel, enough: float) -> tuple[float, float]:
         rows = np.flatnonzero(steps <= np.quantile(some, EVERY / steps.size))
         steps, before, after = steps[rows], before[rows], after[rows]
     size = np.maximum(np.abs(before), np.abs(after))
-    # Where the smallest step of all is, there single counts are likely.
-    smallest = int(np.argmin(np.where(steps > 0.0, steps, np.inf)))
     coarsest, repeats = 0.0, 0.0
-    for group in _of_like_size(size, min(max(steps.size // FEWEST, 1), GROUPS), smallest):
+    for group in np.array_split(np.argsort(size), min(max(steps.size // FEWEST, 1), GROUPS)):
         found = steps[group]
-        found = np.sort(found[found > 1e-12 * size[group].max()])
+        found = found[found > 1e-12 * size[group[-1]]]
         count = common_step(found)
         if count is not None and found.size > SOME:
             coarsest = max(coarsest, count)
             # Steps of a single count to and fro are twice as many as those of none.
             repeats += np.count_nonzero(found < 1.5 * count) / 2
-            if repeats > enough:
-                break
     return coarsest, repeats
-
-
-def _of_like_size(size: np.ndarray, groups: int, one: int) -> Iterator[np.ndarray]:
-    """Places in ``size`` (N,) in as many groups of like size, that of ``one`` first; the rest is sorted if asked for."""
-    ends = np.cumsum([0, *(part.size for part in np.array_split(size, groups))])
-    at = int(np.searchsorted(ends, np.count_nonzero(size < size[one]), side="right")) - 1
-    low, high = ends[at], ends[at + 1]
-    order = np.argpartition(size, [end for end in (low, high) if end < size.size])
-    yield order[low:high]
-    for places, others in ((order[:low], at), (order[high:], groups - at - 1)):
-        if others:
-            yield from np.array_split(places[np.argsort(size[places])], others)
 
 
 def _quietest(channel: Channel) -> float:

@@ -16,6 +16,8 @@ EVERY = 65536
 """Samples from which a level is taken: its error is under a percent, and a long record costs no more."""
 _PIECE = 16384
 """Samples that are worked on at once."""
+MULTIPLES = 200
+"""Times what a channel is counted in up to which its steps are looked at: larger ones are near some multiple of anything."""
 RANKS, SHARE = (0, 1, 2, 4, 8, 16), 200
 """Places among the sorted steps, and the share of them, up to which one is tried as what a channel is counted in."""
 
@@ -71,16 +73,27 @@ def runs(flags: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def common_step(steps: np.ndarray) -> float | None:
-    """The step of which the smaller ones of sorted ``steps`` (N,), all above 0, are multiples; None where there is none."""
+    """The step of which the smaller ones of ``steps`` (N,), all above 0, are multiples; None where there is none."""
     if not steps.size:
         return None
-    # Several are tried, since a bridged sample or two are no multiples, and in fast motion single counts are rare.
+    smallest = float(steps.min())
+    if _are_multiples(steps[steps < MULTIPLES * smallest], smallest, steps.size):
+        return smallest
+    # Further ones are tried, since a bridged sample or two are no multiples, and in fast motion single counts are rare.
+    steps = np.sort(steps)
     for rank in (*RANKS, steps.size // SHARE):
         count = float(steps[min(rank, steps.size - 1)])
-        small = steps[: np.searchsorted(steps, 200 * count)] / count
-        if small.size >= min(16, steps.size) and np.count_nonzero(np.abs(small - np.rint(small)) < 0.1) / small.size > 0.9:
+        if _are_multiples(steps[: np.searchsorted(steps, MULTIPLES * count)], count, steps.size):
             return count
     return None
+
+
+def _are_multiples(small: np.ndarray, count: float, size: int) -> bool:
+    """Whether small steps, of ``size`` steps in all, are enough and nearly all multiples of ``count``."""
+    if small.size < min(16, size):
+        return False
+    times = small / count
+    return bool(np.count_nonzero(np.abs(times - np.rint(times)) < 0.1) / small.size > 0.9)
 
 
 def listed_rows(rows: np.ndarray | list[int], most: int = 6) -> str:
