@@ -137,6 +137,9 @@ plt.show()
 
 # %%
 refined = jb.refine(record, heldout=heldout, inertia=3.16)
+refined
+
+# %%
 print(refined)
 
 # %% [markdown]

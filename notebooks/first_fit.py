@@ -100,7 +100,15 @@ print(", ".join(jb.catalogue()))
 
 # %%
 full = jb.fit(record, inertia=3.16, effects=["gravity"], heldout=heldout)
-print(full)
+full
+
+# %% [markdown]
+# At the end of a cell a result shows itself as a table with its picture; `print` tells the same in words. A program takes the
+# numbers one by one, or as pandas has them:
+
+# %%
+print(full.parameters["backlash"].value, full.parameters["backlash"].unit)
+full.to_dataframe()
 
 # %% [markdown]
 # The error has come down to the noise, and `gravity.G` is negative: the link hangs. Look also at how far the play and

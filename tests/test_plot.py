@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 import jaxbacklash as jb
 from jaxbacklash import plot
+from jaxbacklash.plot.motion import Motion
 
 from . import made_up
 
@@ -102,6 +103,11 @@ def test_the_joint_over_its_motion():
     assert np.allclose(law[1], expected, atol=1e-6 * made_up.STIFFNESS)
     z = fit.records[0].channels["z"][10:-10]
     assert np.array_equal(ax.get_lines()[0].get_xdata(), z)
+    points = ax.get_lines()[0].get_ydata()
+    carried = Motion(fit.records[0], "z")
+    # What a bare joint returns is what inertia and damping leave of nothing.
+    expected = -made_up.INERTIA * carried.ddy - made_up.DAMPING * carried.dz
+    assert np.allclose(points, expected[10:-10])
     edges = [line.get_xdata()[0] for line in ax.get_lines() if len(set(line.get_xdata())) == 1 and len(line.get_xdata()) == 2]
     assert np.allclose(sorted(edges)[:2], [-made_up.PLAY / 2, made_up.PLAY / 2])
     plane = one(plot.phase_plane, fit)

@@ -65,7 +65,11 @@ def test_chaos(chaotic):
     lags = found.curve.lags
     ax = one(plot.stretching, found)
     factor = 1e3 if lags[-1] * found.dt < 1.0 else 1.0
-    assert curve(ax, factor * found.dt * lags, found.curve.smooth)
+    named = {line.get_label(): line.get_data() for line in ax.get_lines()}
+    for label, values in (("Kantz, averaged over a swing", found.curve.smooth), ("Rosenstein", found.curve.rosenstein)):
+        assert np.array_equal(named[label][0], factor * found.dt * lags)
+        assert np.array_equal(named[label][1], values)
+    assert np.allclose(named["unrelated points"][1], found.curve.plateau)
     assert curve(one(plot.chaos, found), factor * found.dt * lags, found.curve.rosenstein)
     four = several(plot.chaos, 4, found)
     assert curve(four[3], found.walk.p, found.walk.q)
