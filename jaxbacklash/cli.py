@@ -22,7 +22,6 @@ from .errors import BadInput
 
 app = typer.Typer(
     name="jaxbacklash",
-    help="Find backlash, stiffness, damping and the missing physics of a loose joint from measured motion.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -62,6 +61,24 @@ class Computation(Checked):
 computes = functools.partial(app.command, cls=Computation)
 
 
+def tell_version(asked: bool) -> None:
+    """Print name and version, and end."""
+    if asked:
+        from . import __version__
+
+        print(f"jaxbacklash {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def program(
+    version: Annotated[
+        bool, typer.Option("--version", callback=tell_version, is_eager=True, help="Print the version and end")
+    ] = False,
+) -> None:
+    """Find backlash, stiffness, damping and the missing physics of a loose joint from measured motion."""
+
+
 def there(found: Any) -> Any:
     """The path or paths given, if there is something: a wrong name need not wait for libraries to load."""
     from .commands.doors import state_of
@@ -72,6 +89,14 @@ def there(found: Any) -> Any:
     return found
 
 
+EFFECTS = (
+    "asymmetric_gap, asymmetric_stiffness, bouc_wen, contact_damping, coulomb_ground, coulomb_joint, cubic_stiffness, dahl, "
+    "flexible_link, gap_drift, gap_spring, gravity, hunt_crossley, learned_torque, linear_gravity, lugre, preload, "
+    "quadratic_drag, sensor_delay, sensor_gain, sensor_offset, stiffness_drift, stribeck, torque_ripple"
+)
+"""What ``jaxbacklash.catalogue()`` lists, for a help that waits for no library; a test compares the two."""
+MODELS = "joint (play, contact stiffness, damping), linear (a spring without play), free (damping alone), or a file FILE.toml"
+Model = Annotated[str, typer.Option("--model", help=f"What the fit begins with: {MODELS}")]
 Inertia = Annotated[
     float | None,
     typer.Option("--inertia", help="Inertia of the link about its joint [kg m^2; kg]; without it values are per unit inertia"),
@@ -107,17 +132,15 @@ def look(
     command.run(file, out=out, as_json=json, reading=reading)
 
 
-@computes(
-    epilog="Example: jaxbacklash fit run1.csv --inertia 3.16 --columns x=enc1,z=enc2 --unit x=deg,z=deg --out fit1"
-)
+@computes(epilog="Example: jaxbacklash fit run1.csv --inertia 3.16 --columns x=enc1,z=enc2 --unit x=deg,z=deg --out fit1")
 @reads
 def fit(
     records: Annotated[
         list[Path], typer.Argument(callback=there, help="One or more records: CSV, npz or mat; see the README for columns")
     ],
     inertia: Inertia = None,
-    model: Annotated[str, typer.Option("--model", help="joint, linear, free, or a model file FILE.toml to start from")] = "joint",
-    effects: Annotated[str | None, typer.Option("--effects", help="Effects to add: gravity,coulomb_joint")] = None,
+    model: Model = "joint",
+    effects: Annotated[str | None, typer.Option("--effects", help=f"Effects to add, some of: {EFFECTS}")] = None,
     laws: Laws = None,
     heldout: Heldout = None,
     out: Out = None,
@@ -170,8 +193,8 @@ def compare(
 def diagnose(
     record: Annotated[Path, typer.Argument(callback=there, help="A record: CSV, npz or mat")],
     inertia: Inertia = None,
-    model: Annotated[str, typer.Option("--model", help="joint, linear, free, or a model file FILE.toml to start from")] = "joint",
-    effects: Annotated[str | None, typer.Option("--effects", help="Effects the model has already: gravity,coulomb_joint")] = None,
+    model: Model = "joint",
+    effects: Annotated[str | None, typer.Option("--effects", help=f"Effects the model has already, some of: {EFFECTS}")] = None,
     laws: Laws = None,
     out: Out = None,
     json: Json = False,
@@ -198,7 +221,7 @@ def refine(
     record: Annotated[Path, typer.Argument(callback=there, help="A record: CSV, npz or mat")],
     heldout: Heldout = None,
     inertia: Inertia = None,
-    model: Annotated[str, typer.Option("--model", help="joint, linear, free, or a model file FILE.toml to start from")] = "joint",
+    model: Model = "joint",
     laws: Laws = None,
     out: Out = None,
     json: Json = False,
@@ -264,9 +287,7 @@ def chaos(
     )  # fmt: skip
 
 
-@computes(
-    epilog="Example: jaxbacklash simulate fit1/model.toml --excitation chirp:amplitude=0.07,f0=0,f1=12 --out sim.csv"
-)
+@computes(epilog="Example: jaxbacklash simulate fit1/model.toml --excitation chirp:amplitude=0.07,f0=0,f1=12 --out sim.csv")
 def simulate(
     model: Annotated[Path, typer.Argument(help="A model file (TOML)")],
     out: Annotated[Path, typer.Option("--out", help="Record to write: .csv, .npz or .mat")],
@@ -300,9 +321,7 @@ def simulate(
     )  # fmt: skip
 
 
-@computes(
-    "map", epilog="Example: jaxbacklash map --inverse-alpha 1:5:256 --zeta 0.005:0.03:64 --out case1.nc"
-)
+@computes("map", epilog="Example: jaxbacklash map --inverse-alpha 1:5:256 --zeta 0.005:0.03:64 --out case1.nc")
 def map_(
     case: Annotated[int, typer.Option("--case", help="The paper's CASE 1 or 2, in dimensionless form")] = 1,
     inverse_alpha: Annotated[

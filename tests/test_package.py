@@ -164,7 +164,7 @@ def test_readme_and_command_line_agree():
         used = set(re.findall(r"--[a-z0-9-]+", rest.split("#")[0]))
         assert used <= known, f"the README gives {name} the options {sorted(used - known)}"
     everywhere = {option for command in commands.values() for parameter in command.params for option in parameter.opts}
-    assert set(re.findall(r"(?<![\w-])--[a-z][a-z-]+", README)) <= everywhere | {"--help"}
+    assert set(re.findall(r"(?<![\w-])--[a-z][a-z-]+", README)) <= everywhere | {"--help", "--version"}
 
 
 def test_links_lead_somewhere():

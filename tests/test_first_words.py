@@ -1,0 +1,46 @@
+"""What a newcomer is told first: the version, the effects by name, the models, the paper, and how to cite."""
+
+import re
+from pathlib import Path
+
+import jaxbacklash as jb
+from jaxbacklash.cli import EFFECTS
+from tests.in_process import call
+
+ROOT = Path(__file__).resolve().parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+OWN = set(jb.AbstractEffect.__module__.split(".")[:1])
+
+
+def shipped() -> set[str]:
+    """The names of the effects that the package itself defines."""
+    return {name for name, law in jb.catalogue().items() if law.__module__.split(".")[0] in OWN}
+
+
+def test_version_is_printed_and_nothing_else(tmp_path):
+    told = call(["--version"], tmp_path)
+    assert (told.code, told.out, told.err) == (0, f"jaxbacklash {jb.__version__}\n", "")
+
+
+def test_help_names_every_effect_and_what_each_model_is(tmp_path):
+    assert set(EFFECTS.split(", ")) == shipped()
+    for command in ("fit", "diagnose"):
+        told = " ".join(call([command, "--help"], tmp_path).out.split())
+        assert not [name for name in shipped() if name not in told]
+        assert "linear (a spring without play)" in told
+        assert "free (damping alone)" in told
+
+
+def test_readme_names_every_effect_the_paper_and_the_cache():
+    assert not [name for name in shipped() if f"`{name}`" not in README]
+    for words in ("*Identification of backlash in mechanical systems*", "Tjahjowidodo", "XDG_CACHE_HOME", "--model linear",
+                  "--model free", 'fit.parameters["backlash"].value', "--version"):  # fmt: skip
+        assert words in README, words
+
+
+def test_citation_is_of_this_version():
+    lines = (ROOT / "CITATION.cff").read_text(encoding="utf-8").splitlines()
+    fields = dict(re.fullmatch(r"([a-z-]+):\s*(.*)", line).groups() for line in lines if re.match(r"[a-z-]+:", line))
+    assert fields["version"] == jb.__version__
+    assert fields["cff-version"] == "1.2.0"
+    assert {"message", "title", "authors", "references"} <= fields.keys()
