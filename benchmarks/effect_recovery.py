@@ -1,6 +1,6 @@
 """Which effects are found on records whose hidden ones are known: exact sets, false additions, intervals, by kind of record.
 
-    python -m benchmarks.effect_recovery [--noise 1 10 30] [--duration 20] [--tiny] [--out FILE.json]
+    python -m benchmarks.effect_recovery [--noise 1 10 30] [--duration 20] [--engine windows] [--tiny] [--out FILE.json]
 
 Every record has its own random rig, excitation (chirp, multisine, stepped or modulated sine), strengths, and on every
 third an encoder with counts of three noises; the simulation is non-smooth and shares nothing with the package. Each
@@ -208,6 +208,7 @@ def main() -> None:
     parser.add_argument("--noise", type=float, nargs="+", default=[1.0, 10.0, 30.0])
     parser.add_argument("--duration", type=float, default=20.0)
     parser.add_argument("--only", type=int, nargs="*", default=None)
+    parser.add_argument("--engine", default="windows", help="of refine: windows or evidence")
     parser.add_argument("--tiny", action="store_true")
     parser.add_argument("--out", type=Path, default=None)
     options = parser.parse_args()
@@ -219,7 +220,7 @@ def main() -> None:
         for number in ([0] if options.tiny else numbers):
             case = make_case(number, noise, 8.0 if options.tiny else options.duration)
             begin = time.perf_counter()
-            found = refine(case.record, heldout=case.heldout, inertia=case.rig.inertia)
+            found = refine(case.record, heldout=case.heldout, inertia=case.rig.inertia, engine=options.engine)
             rows.append(judge(case, found, time.perf_counter() - begin))
             words = number, "+".join(case.hidden), "->", "+".join(found.effects), found.verdict.word
             print(*words, f"{rows[-1]['seconds']:.1f} s", flush=True)

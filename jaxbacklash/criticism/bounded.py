@@ -10,10 +10,11 @@ from .steps import Step
 from .workbench import ExhaustedError
 
 if TYPE_CHECKING:
+    from .evidence_search import EvidenceSearch
     from .search import Search
 
 
-def bounded(search: Search) -> list[Step]:
+def bounded(search: Search | EvidenceSearch) -> list[Step]:
     """The path of a search, whole or as far as it came; then a warning says so.
 
     Parameters

@@ -9,7 +9,7 @@ side count on that side only.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import equinox as eqx
 import numpy as np
@@ -50,6 +50,15 @@ def rank(bench: Workbench, trial: Trial, names: Iterable[str] | None = None) -> 
     shapes = {n: shaped(bench, trial, n) for n in absent}
     found = [c for group in _groups(bench, trial, shapes) for c in _score(bench, trial, shapes, group)]
     return sorted(found, key=lambda c: -c.gain)
+
+
+def score_test(
+    bench: Workbench, trial: Trial, names: Iterable[str], *, tie: float, deflation: float = 1.0
+) -> list[Candidate]:
+    """`rank` at the ties with which a model was fitted; gains are divided by ``deflation``."""
+    shapes = {n: shaped(bench, trial, n) for n in names}
+    found = [c for group in _groups(bench, trial, shapes) for c in _score(bench, trial, shapes, group, tie=tie)]
+    return [replace(c, gain=c.gain / deflation) for c in found]
 
 
 def reshaped(bench: Workbench, trial: Trial, name: str) -> Candidate:
@@ -104,15 +113,17 @@ def _groups(bench: Workbench, trial: Trial, shapes: dict[str, AbstractEffect]) -
 
 
 def _score(
-    bench: Workbench, trial: Trial, shapes: dict[str, AbstractEffect], group: list[str], *, instead: bool = False
-) -> list[Candidate]:
+    bench: Workbench, trial: Trial, shapes: dict[str, AbstractEffect], group: list[str], *, instead: bool = False,
+    tie: float | None = None,
+) -> list[Candidate]:  # fmt: skip
     """Candidates at these shapes from one set of sensitivities, beside a model or ``instead`` of what they contain of it: then
     their strengths are what they add to that."""
     columns = [(name, n) for name in group for n in strengths(shapes[name])]
     problem, _ = bench.problem(
         bench.effects(trial), trial.system, extra=[f"{name}.{n}" for name, n in columns], shapes=shapes
     )
-    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1] if trial.tied else 0.0))
+    tie = (TIES[0][-1] if trial.tied else 0.0) if tie is None else tie
+    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(tie))
     schur, pull, cost, scales = bench.look(problem, trial.unknowns)
     q, present = len(trial.free), trial.value
     found = []

@@ -32,8 +32,10 @@ from ..records.force import tell_way
 from ..system import System
 from .bounded import bounded
 from .either import either
+from .evidence_search import EvidenceSearch
 from .experiment import separate
 from .foresight import Foresight
+from .model_fitter import ModelFitter
 from .refinement import Refinement
 from .search import Search
 from .steps import Stage
@@ -41,6 +43,7 @@ from .unnamed import unnamed
 from .verdict import judge_rest
 from .workbench import Trial, Workbench, adequate, pruned
 
+ENGINES = ("windows", "evidence")
 SEPARATED = 2
 """Alternatives for which an experiment is looked for."""
 
@@ -57,6 +60,7 @@ def refine(
     seed: int = 0,
     progress: Callable[[str, float], None] = silent,
     settled: Callable[[Fit], object] = lambda fit: None,
+    engine: str = "windows",
 ) -> Refinement:
     """Find the effects that a record needs beyond its base model.
 
@@ -74,6 +78,8 @@ def refine(
     progress : told the stage in words and the share of the work done
     settled : told a model that leaves but noise as soon as it is scored, while the search still looks for more, and at last the
         model kept, unless that was the last it was told; that once more, if others do as well, with intervals that allow for them
+    engine : ``"windows"``, or ``"evidence"``, which fits each model together with the size of the torque it leaves out
+        (`criticism.evidence_search`) and is to replace the other
 
     Returns
     -------
@@ -108,13 +114,20 @@ def refine(
         system, names, start = base_system(record, model, inertia)
     else:
         names, model = free_names(system), "given"
-    bench = Workbench(record, system, names, window, beside=heldout)
+    if engine not in ENGINES:
+        raise BadInput(f"engine {engine!r}: wanted one of {', '.join(ENGINES)}")
+    bench = (ModelFitter if engine == "evidence" else Workbench)(record, system, names, window, beside=heldout)
     per_inertia = inertia is None and record.kind not in ABSOLUTE and model != "given"
     judged = _Judge(bench, heldout, model, per_inertia, translational, start, settled)
     clock["prepare"] = time.perf_counter()
-    with Foresight(bench) as ahead:
-        search = Search(bench, progress, ahead.member, judged.tell)
+    search: Search | EvidenceSearch
+    if isinstance(bench, ModelFitter):
+        search = EvidenceSearch(bench, progress)
         steps = bounded(search)
+    else:
+        with Foresight(bench) as ahead:
+            search = Search(bench, progress, ahead.member, judged.tell)
+            steps = bounded(search)
     clock["search"] = time.perf_counter()
 
     progress("scoring predictions", 0.85)
@@ -189,6 +202,8 @@ class _Judge:
     def _predict(self, problem: Problem) -> Score:
         assert self.heldout is not None
         bench = self.bench
-        prepared = prepare(bench.pace, [self.heldout], bench.window, intervals=bench.windows.intervals)
+        prepared = prepare(
+            bench.pace, [self.heldout], bench.window, intervals=bench.windows.intervals, shooting=bench.shooting
+        )
         known = bench.noise_factor, bench.layout.noise[0]
         return predict(lambda windows: eqx.tree_at(lambda p: p.windows, problem, windows), prepared, self.heldout, known)[0]

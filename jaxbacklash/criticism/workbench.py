@@ -101,19 +101,22 @@ class Workbench:
     base_free : its free parameters
     window : length of the windows whose error is quoted [s]
     beside : another record that will be predicted with the same program
+    shooting : length of the shooting windows [s]; default as for a fit
     """
 
     def __init__(
-        self, record: Record, base: System, base_free: Iterable[str], window: float | None, beside: Record | None = None
-    ) -> None:
+        self, record: Record, base: System, base_free: Iterable[str], window: float | None, beside: Record | None = None, *,
+        shooting: float | None = None,
+    ) -> None:  # fmt: skip
+        self.shooting = shooting
         self.record, self.base, self.base_free, self.window = record, base, tuple(base_free), window
         self.windows: Windows
         self.layout: Layout
         self.outright = gripping() if record.kind == "transmitted" else ()
         self.gripped = with_friction(record, base, self.base_free, self.outright)
         self.pace = self.gripped or base
-        least = 0 if beside is None else prepare(self.pace, [beside], window)[0].intervals
-        self.windows, self.layout, self.group = prepare(self.pace, [record], window, intervals=least)
+        least = 0 if beside is None else prepare(self.pace, [beside], window, shooting=shooting)[0].intervals
+        self.windows, self.layout, self.group = prepare(self.pace, [record], window, intervals=least, shooting=shooting)
         self.ties = np.asarray(self.windows.tie)
         self.noise_factor = 1.0
         self.laws = {n: c for n, c in catalogue().items() if c.catalogued and applicable(c, base)}

@@ -26,7 +26,7 @@ class ArrowSolution(eqx.Module):
     ``schur`` is the information about the parameters with all local unknowns marginalised; its inverse is their
     covariance when the blocks are those of J^T J with unit-variance residuals. ``pull`` is minus the gradient of the cost
     with the local unknowns following: the score. ``promise`` is by how much the step lowers the cost as far as its derivatives
-    tell, damping included.
+    tell, damping included. ``log_determinant`` of the local unknowns' own part of H + lambda D, those that move nothing apart.
     """
 
     local: Array
@@ -34,6 +34,7 @@ class ArrowSolution(eqx.Module):
     schur: Array
     pull: Array
     promise: Array
+    log_determinant: Array
 
 
 def solve(
@@ -56,7 +57,8 @@ def solve(
     q = blocks.corner.shape[0]
     eye = jnp.eye(size)
     used = jnp.asarray(blocks.slope.shape[0] if used is None else used)
-    diagonal = blocks.diagonal + (damping * blocks.seen + _held(blocks, used))[:, :, None] * eye
+    held = _held(blocks, used)
+    diagonal = blocks.diagonal + (damping * blocks.seen + held)[:, :, None] * eye
     border = jnp.concatenate([blocks.border, blocks.slope[:, :, None]], axis=2)
 
     def eliminate(carry: Any, block: Any) -> Any:
@@ -90,7 +92,14 @@ def solve(
         return own, own
 
     local = scan_used(back, jnp.zeros(size), (factors, half_below, half_edge), used, reverse=True)
-    return ArrowSolution(local, theta, schur, right, promise)
+    return ArrowSolution(local, theta, schur, right, promise, _log_determinant(factors, held, used))
+
+
+def _log_determinant(factors: Array, held: Array, used: Array) -> Array:
+    """Of a block tridiagonal matrix by its Cholesky factors (W, B, B), without what holds an unknown that moves nothing."""
+    own = 2.0 * jnp.log(jnp.diagonal(factors, axis1=1, axis2=2)) - jnp.log(jnp.where(held > 0.0, held, 1.0))
+    there = jnp.arange(factors.shape[0]) < used
+    return jnp.sum(jnp.where(there[:, None], own, 0.0))
 
 
 def _held(blocks: Blocks, used: Array) -> Array:

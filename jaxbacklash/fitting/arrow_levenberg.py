@@ -114,7 +114,8 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
     ) -> Any:
         undamped = solve(state.blocks, jnp.asarray(0.0), args.windows.used, _room(args, y.theta))
         stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps}
-        return y, aux, stats | {"schur": undamped.schur, "pull": undamped.pull, "promise": undamped.promise}
+        told = {"schur": undamped.schur, "pull": undamped.pull, "promise": undamped.promise}
+        return y, aux, stats | told | {"log_determinant": undamped.log_determinant}
 
 
 def _rows(problem: Problem) -> Array:

@@ -208,15 +208,16 @@ def _between_samples(
 
 
 def prepare(
-    system: System, records: Sequence[Record], window: float | None, *, intervals: int = 0
+    system: System, records: Sequence[Record], window: float | None, *, intervals: int = 0, shooting: float | None = None
 ) -> tuple[Windows, Layout, int]:
     """Shooting windows for a system like this one, and how many of them make a score window of the wished length.
 
-    ``intervals`` asks for at least so many spline intervals a window, so that two records may share a compiled program.
+    ``intervals`` asks for at least so many spline intervals a window, so that two records may share a compiled program;
+    ``shooting`` for shooting windows of another length [s].
     """
     dt = records[0].dt
     window = score_window(dt, window)
-    shooting = shooting_window(dt, window)
+    shooting = shooting_window(dt, window) if shooting is None else min(shooting, 0.5 * window)
     # Without the noise of a base motion a record says ten times more: its panels have to be finer.
     finer = 1.0 if records[0].kind == "base_motion" else 2.0
     longest = longest_panel(dt) / finer

@@ -26,7 +26,8 @@ from .lengths import LONGEST_PANEL, SHOOTING_WINDOW
 
 Array = Any
 LEAST_INTERVALS = 8
-"""Spline intervals that a window has room for at least; those that its input does not need are joined."""
+"""Spline intervals that a window of `SHOOTING_WINDOW` or longer has room for at least, a shorter one for its share of them; those
+that its input does not need are joined."""
 HELD = 30.0
 """How many times more firmly than by the samples a spline is held to have no corner at a knot that its input does not need."""
 SPEED = 0.2
@@ -145,7 +146,10 @@ def cut(
     if driver is not None:
         needed = max(choose_intervals(r.t, r.channels[driver], length * dt) for r in records)
         # A step of four keeps the number of compiled shapes small.
-        intervals = -(-max(needed, LEAST_INTERVALS, least) // 4) * 4
+        # No fewer than a window shares with the one before.
+        room = max(round(LEAST_INTERVALS * min(length * dt / SHOOTING_WINDOW, 1.0)), DEGREE + 1)
+        step = 4 if room >= LEAST_INTERVALS else 2
+        intervals = -(-max(needed, room, least) // step) * step
         needed = next(n for n in range(needed, intervals + 1) if intervals % n == 0)
     parts = [_cut_one(r, length, every, intervals, needed, driver) for r in records]
     total = bucket(sum(p["measured"].shape[0] for p in parts))

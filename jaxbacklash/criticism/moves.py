@@ -1,0 +1,56 @@
+"""Moves from one model to its neighbours in the graph of models: add a law, drop one, put another in its place.
+
+The graph follows from what laws declare about themselves: friction in the joint is one law at a time, and a law that contains a
+simpler one takes its place. `evidence_search` says which moves are tried; `model_fitter` fits the models.
+"""
+
+from __future__ import annotations
+
+from ..mechanics import AbstractEffect
+from ..parameters import specs, values, with_values
+from .candidates import Candidate, rubs
+from .fitted_model import FittedModel
+from .model_fitter import ModelFitter
+
+
+def give_way(fitter: ModelFitter, model: FittedModel, name: str) -> frozenset[str]:
+    """Laws of a model in whose place a law comes: simpler ones that it contains, and friction in the joint if it is such."""
+    laws = fitter.laws
+    contained = set(fitter.contained(name)) & model.names
+    rubbing = {n for n in model.names if rubs(laws[n])} if rubs(laws[name]) else set()
+    return frozenset(contained | rubbing)
+
+
+def add(fitter: ModelFitter, model: FittedModel, candidate: Candidate) -> FittedModel:
+    """The model with one more law, from its predicted values; fitted once for each set of laws."""
+    gone = give_way(fitter, model, candidate.name)
+    effects = {n: e for n, e in fitter.effects(model).items() if n not in gone} | {candidate.name: candidate.effect}
+    return _known(fitter, effects) or fitter.fit_model(effects, model)
+
+
+def drop(fitter: ModelFitter, model: FittedModel, name: str) -> FittedModel:
+    """The model without one of its laws; fitted once for each set of laws."""
+    effects = {n: e for n, e in fitter.effects(model).items() if n != name}
+    return _known(fitter, effects) or fitter.fit_model(effects, model)
+
+
+def contained_instead(fitter: ModelFitter, model: FittedModel, name: str) -> list[FittedModel]:
+    """The model with each simpler law that one of its laws contains in that one's place, at the strength that one has."""
+    found = []
+    for simpler in fitter.contained(name):
+        if simpler in model.names:
+            continue
+        effects = fitter.effects(model)
+        effects[simpler] = _reduced(effects.pop(name), fitter.laws[simpler])
+        found.append(fitter.fit_model(effects, model))
+    return found
+
+
+def _known(fitter: ModelFitter, effects: dict[str, AbstractEffect]) -> FittedModel | None:
+    return fitter.fitted.get(frozenset(effects))
+
+
+def _reduced(effect: AbstractEffect, law: type[AbstractEffect]) -> AbstractEffect:
+    """The simpler law at the values that it shares with one that contains it."""
+    simple = law()
+    return with_values(simple, {n: v for n, v in values(effect).items() if n in specs(simple)})

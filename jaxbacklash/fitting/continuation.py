@@ -1,0 +1,182 @@
+r"""One kind of fit for every model: by continuation in the size of the torque that the model leaves out.
+
+The equation of motion carries an unknown torque that is white in time, of power q. It acts where shooting windows join: each
+window's end may miss the next window's start by a jump whose size goes with :math:`\sqrt q`. A large q frees the windows, q = 0
+makes them one trajectory, and for each q the record has a marginal likelihood, its evidence, by Laplace's approximation: the
+log-determinant of the windows' own unknowns comes with the block tridiagonal elimination that every step makes anyway.
+
+A fit goes from a large q to smaller ones as long as the evidence rises (to larger ones, where the first was too small already),
+each fit begun where the last one ended, and ends at the likeliest q, or at q = 0 where the likelihood ratio does not speak
+against it. Dry friction is softened on the way, over a range of speed that narrows with q: a jump that q allows hides what the
+softening changes. See `jaxbacklash.fitting.levenberg` for the steps, `jaxbacklash.criticism.model_fitter` for who asks.
+
+Source: MacKay, Neural Computation 4 (1992) 415, on the evidence of a hyperparameter by Laplace's approximation; Allgower and
+Georg, Introduction to Numerical Continuation Methods (2003).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+import equinox as eqx
+import numpy as np
+
+from .levenberg import Levenberg, Minimum, minimise
+from .problem import Problem, Unknowns
+from .shooting import tie_weights
+from .softened import softened
+
+LOOSEST, TIGHTEST = 1e-4, 100.0
+"""Weights of the ties between windows from which on to which a fit goes: the first lets a window's end miss the next one's start
+by two hundred times the noise, with the last the windows are one trajectory."""
+FINER = 10.0
+"""Factor by which the weight of the ties grows from one fit to the next."""
+FALLEN = 3.0
+"""Fall of the log evidence below its highest from which on tighter ties are not tried: a likelihood of a twentieth."""
+WITHIN_CHANCE = 1.92
+"""Half the 95 % point of chi-square with one degree of freedom: q = 0 is kept where the likeliest q gains no more."""
+SOFT, SHARP = 0.03, 0.1
+"""Range in which dry friction turns its sign where ties are as loose as `SOFT_AT`, as a share of the speed at which it slides;
+and the weight of the ties from which on it is sharp."""
+SOFT_AT = 1e-3
+"""Weight of the ties up to which dry friction is as soft as `SOFT`; it narrows as they grow."""
+BETWEEN, LAST = 15, 40
+"""Steps of a fit with ties looser than `SHARP`, and of one with those or tighter ones."""
+ROUGHLY, CLOSELY = 0.3, 1e-2
+"""How near to the minimum a fit on the way comes, and the last one, as `Levenberg.atol`: half the square of the standard errors
+by which a parameter may be off."""
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A fit on the way: weight of the ties, log evidence, steps taken."""
+
+    tie: float
+    log_evidence: float
+    steps: int
+
+
+@dataclass(frozen=True)
+class Continued:
+    """Where a fit by continuation ended.
+
+    ``problem`` with the ties at the likeliest q; the ``minimum`` found there; its ``log_evidence``; ``stops``, the fits on the
+    way; ``converged`` whether the last one came to its end.
+    """
+
+    problem: Problem
+    minimum: Minimum
+    log_evidence: float
+    stops: tuple[Stop, ...]
+    converged: bool
+
+    @property
+    def tie(self) -> float:
+        """Weight of the ties: `TIGHTEST` where nothing is left out and the windows are one trajectory."""
+        return float(self.problem.tie)
+
+
+def continued(
+    problem: Problem, start: Unknowns, *, first: float = LOOSEST, speeds: Mapping[str, float] | None = None
+) -> Continued:
+    """Fit a model together with the size of the torque it leaves out.
+
+    Parameters
+    ----------
+    problem : a model with its free parameters; the weight of its ties is set here
+    start : unknowns to begin from
+    first : weight of the ties to begin with, the likeliest of a model that this one is near to
+    speeds : root mean square speed [rad/s] at which each law of dry friction in the model slides, by the law's name
+
+    Returns
+    -------
+    Continued
+        ``log_evidence`` is minus infinity where no fit stayed finite.
+
+    Examples
+    --------
+    >>> found = continued(problem, first_guess(problem))  # doctest: +SKIP
+    >>> found.tie == TIGHTEST  # nothing is left out  # doctest: +SKIP
+    True
+    """
+    way = _Way(problem, speeds or {})
+    way.along(_tighter(first), start)
+    if way.best == first:
+        way.along(_looser(first), way.reached.get(first, start))
+    best = way.best
+    if way.height(TIGHTEST) >= way.height(best) - WITHIN_CHANCE:
+        best = TIGHTEST
+    at = _tied(problem, best)
+    minimum = minimise(at, way.reached.get(best, start), Levenberg(limit=LAST, atol=CLOSELY))
+    done = int(minimum.stats["steps"]) < LAST
+    return Continued(at, minimum, log_evidence(at, minimum), tuple(way.stops), done)
+
+
+class _Way:
+    """The fits on the way: where each ended, by the weight of its ties."""
+
+    def __init__(self, problem: Problem, speeds: Mapping[str, float]) -> None:
+        self.problem, self.speeds = problem, speeds
+        self.stops: list[Stop] = []
+        self.reached: dict[float, Unknowns] = {}
+
+    def along(self, ties: Iterable[float], unknowns: Unknowns) -> None:
+        """Fit with one tie after the other, each from where the last one ended, as long as the evidence does not fall."""
+        for tie in ties:
+            at = _tied(self.problem, tie)
+            how = Levenberg(limit=BETWEEN if tie < SHARP else LAST, atol=ROUGHLY)
+            minimum = minimise(_softened(at, self.speeds), unknowns, how)
+            highest = self.height(self.best) if self.stops else -np.inf
+            self.stops.append(Stop(tie, log_evidence(at, minimum), int(minimum.stats["steps"])))
+            if not self.stops[-1].log_evidence >= highest - FALLEN:
+                return
+            unknowns = self.reached[tie] = minimum.value
+
+    @property
+    def best(self) -> float:
+        """The likeliest weight of the ties so far."""
+        return max(self.stops, key=lambda stop: stop.log_evidence).tie
+
+    def height(self, tie: float) -> float:
+        """Log evidence with these ties, minus infinity where they were not tried."""
+        return max((stop.log_evidence for stop in self.stops if stop.tie == tie), default=-np.inf)
+
+
+def log_evidence(problem: Problem, minimum: Minimum) -> float:
+    """Log marginal likelihood of a record under a model and the size of the torque it leaves out, but for a constant.
+
+    The windows' starts and the input's spline are integrated out by Laplace's approximation; the parameters are not, see
+    `jaxbacklash.criticism.fitted_model.FittedModel.criterion`.
+    """
+    on = np.asarray(problem.windows.tie) > 0.0
+    ties = np.asarray(tie_weights(problem, minimum.value.starts.shape[0]))[on]
+    found = np.sum(np.log(ties)) - minimum.stats["cost"] - 0.5 * minimum.stats["log_determinant"]
+    return float(found) if np.isfinite(found) else -np.inf
+
+
+def _tighter(first: float) -> Iterator[float]:
+    tie = first
+    while tie < 0.5 * TIGHTEST:
+        yield tie
+        tie = tie * FINER
+    yield TIGHTEST
+
+
+def _looser(first: float) -> Iterator[float]:
+    tie = first / FINER
+    while tie > 0.5 * LOOSEST:
+        yield tie
+        tie = tie / FINER
+
+
+def _tied(problem: Problem, tie: float) -> Problem:
+    return eqx.tree_at(lambda p: p.tie, problem, np.asarray(float(tie)))
+
+
+def _softened(problem: Problem, speeds: Mapping[str, float]) -> Problem:
+    tie = float(problem.tie)
+    if not speeds or tie >= SHARP:
+        return problem
+    share = SOFT * min(SOFT_AT / tie, 1.0)
+    return softened(problem, {law: share * speed for law, speed in speeds.items()})

@@ -1,0 +1,63 @@
+"""The search by evidence: what hides is named, what does not is not, and what is outside the catalogue leaves a torque out."""
+
+import numpy as np
+import pytest
+
+import jaxbacklash as jb
+from jaxbacklash.criticism.evidence_search import EvidenceSearch
+from jaxbacklash.criticism.model_fitter import ModelFitter
+from jaxbacklash.criticism.refine import refine
+from jaxbacklash.fitting.setup import base_system
+
+from .hidden import hidden
+
+
+def searched(name, kind, seed, seconds=6.0, **values):
+    """A finished search and the last model of its path, and the truth."""
+    record, rig, effects, _ = hidden(name, kind, seed, seconds, **values)
+    base, free, _ = base_system(record, "joint", rig.inertia)
+    search = EvidenceSearch(ModelFitter(record, base, free, None))
+    return search, search.run()[-1].trial, rig, effects
+
+
+def test_nothing_is_added_where_nothing_hides():
+    search, model, rig, _ = searched(None, "multisine", 3)
+    assert not model.names
+    assert model.tied
+    assert not search.level
+    assert model.value["backlash"] == pytest.approx(rig.backlash, rel=1e-3)
+
+
+def test_a_hidden_weight_is_named_at_its_size():
+    search, model, rig, effects = searched("gravity", "multisine", 4, G=20.0)
+    assert model.names == {"gravity"}
+    assert model.tied
+    assert model.value["gravity.G"] == pytest.approx(effects["gravity"]["G"], rel=0.02)
+    assert search.path[0].evidence["gravity"] > search.demand
+
+
+def test_dry_friction_is_followed_to_where_it_is_sharp():
+    _, model, _, effects = searched("coulomb_joint", "multisine", 5, Tc=4.0)
+    assert model.names == {"coulomb_joint"}
+    assert model.tied
+    assert model.value["coulomb_joint.Tc"] == pytest.approx(effects["coulomb_joint"]["Tc"], rel=0.02)
+
+
+@pytest.mark.slow
+def test_friction_that_gives_is_named():
+    _, model, *_ = searched("dahl", "multisine", 6, 10.0, Fc=5.0, sigma=2000.0)
+    assert model.names & {"dahl", "lugre", "bouc_wen"}
+    assert model.tied
+
+
+@pytest.mark.slow
+def test_a_torque_outside_the_catalogue_is_left_out_and_said():
+    _, model, *_ = searched("unknown_disturbance", "multisine", 7, 10.0)
+    assert not model.tied
+
+
+def test_an_unknown_engine_is_refused():
+    t = np.arange(400.0) / 500.0
+    record = jb.Record(t, {"x": 0.05 * np.sin(20.0 * t), "z": 0.01 * np.sin(20.0 * t + 1.0)})
+    with pytest.raises(jb.BadInput, match="wanted one of windows, evidence"):
+        refine(record, inertia=3.0, engine="best")
