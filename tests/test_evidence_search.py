@@ -29,7 +29,7 @@ def test_nothing_is_added_where_nothing_hides():
 
 
 def test_a_hidden_weight_is_named_at_its_size():
-    search, model, rig, effects = searched("gravity", "multisine", 4, G=20.0)
+    search, model, _, effects = searched("gravity", "multisine", 4, G=20.0)
     assert model.names == {"gravity"}
     assert model.tied
     assert model.value["gravity.G"] == pytest.approx(effects["gravity"]["G"], rel=0.02)

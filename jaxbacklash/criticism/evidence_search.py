@@ -20,6 +20,8 @@ from .steps import Step
 
 MOST_FITTED = 3
 """Candidates beside one model that are fitted at most."""
+CLEAR_SHARE = 0.1
+"""Share of what a model leaves, in units of the criterion, that a law must take away if more is left."""
 PROMISING = 0.25
 """Share of the most promising candidate's worth that earns a fit."""
 
@@ -75,8 +77,12 @@ class EvidenceSearch:
         return (model.criterion - other.criterion) / other.deflation
 
     def with_one_more(self, model: FittedModel) -> list[FittedModel]:
-        """The model with each of the most promising absent laws."""
-        return [add(self.bench, model, c) for c in self._promising(self.screened(model))]
+        """The model with each of the most promising absent laws, where that leaves nothing or takes a clear share of the rest.
+
+        What takes little and leaves much stands in for something else.
+        """
+        found = [add(self.bench, model, c) for c in self._promising(self.screened(model))]
+        return [m for m in found if m.tied or model.criterion - m.criterion > CLEAR_SHARE * model.rest]
 
     def with_one_fewer(self, model: FittedModel) -> list[FittedModel]:
         """The model without each of its laws, and with the simpler ones that they contain in their place."""
@@ -100,8 +106,10 @@ class EvidenceSearch:
         return self._screened[key]
 
     def as_likely(self, model: FittedModel) -> dict[tuple[str, ...], FittedModel]:
-        """Other models that the record cannot tell from the one kept, by their laws."""
-        others = [m for m in self.bench.fitted.values() if m.names != model.names and m.tied == model.tied]
+        """Other models that the record cannot tell from the one kept, by their laws; none where that leaves something."""
+        if not model.tied:
+            return {}
+        others = [m for m in self.bench.fitted.values() if m.names != model.names and m.tied]
         return {tuple(sorted(m.names)): m for m in others if self.evidence(model, m) > -self.demand}
 
     def _promising(self, candidates: Iterable[Candidate]) -> list[Candidate]:

@@ -15,13 +15,14 @@ class FittedModel(Trial):
     """A fit by continuation of one model of the catalogue.
 
     ``tie`` weight of the ties between windows at which it ended; ``log_evidence`` the marginal likelihood there;
-    ``inside`` root mean square of the residual inside the windows in units of the noise; ``stops`` the fits on the way. The other
-    attributes are those of `Trial`.
+    ``inside`` root mean square of the residual inside the windows in units of the noise; ``rest`` by how much the criterion is
+    above that of a model like this that leaves noise alone; ``stops`` the fits on the way. The others are those of `Trial`.
     """
 
     tie: float = TIGHTEST
     log_evidence: float = -np.inf
     inside: float = np.inf
+    rest: float = 0.0
     stops: tuple[Stop, ...] = field(default=(), repr=False)
 
     @property

@@ -10,7 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..fitting.continuation import LOOSEST, TIGHTEST, Continued, continued
+from ..fitting.continuation import LOOSEST, TIGHTEST, Continued, continued, log_evidence, tied
+from ..fitting.levenberg import Levenberg, Minimum, minimise
 from ..fitting.problem import Problem, Unknowns
 from ..fitting.search import freedom
 from ..fitting.setup import first_guess, read_through
@@ -80,6 +81,16 @@ class ModelFitter(Workbench):
         """Root mean square speed [rad/s] at which each law of dry friction slides, by name."""
         return {n: float(np.sqrt(np.mean(self.sliding(e.port) ** 2))) for n, e in effects.items() if e.slides}
 
+    def _rest(self, found: Continued) -> float:
+        """By how much minus twice the log evidence is above that of one trajectory that leaves noise alone.
+
+        Such a one would have half a unit of cost for each degree of freedom, and the log-determinants of this model's windows.
+        """
+        tight = tied(found.problem, TIGHTEST)
+        seen = minimise(tight, found.minimum.value, Levenberg(limit=1))
+        stats = {**seen.stats, "cost": np.asarray(0.5 * freedom(tight, tied=True))}
+        return 2.0 * (log_evidence(tight, Minimum(seen.value, stats)) - found.log_evidence)
+
     def _model(self, found: Continued, names: frozenset[str], free: tuple[str, ...]) -> FittedModel:
         problem, stats = found.problem, found.minimum.stats
         moved = np.asarray(problem.parameters(found.minimum.value.theta))
@@ -89,12 +100,13 @@ class ModelFitter(Workbench):
         residual = np.where(weight > 0.0, residual, 0.0)
         inside = float(np.sqrt(np.sum(residual**2) / rows))
         cost = float(np.nan_to_num(stats["cost"], nan=np.inf))
-        tied = found.tie >= TIGHTEST
+        whole = found.tie >= TIGHTEST
         # Free windows leave as much as their samples hold beyond what follows the noise.
-        misfit = np.sqrt(2.0 * cost / freedom(problem, tied=True)) if tied else inside
+        misfit = np.sqrt(2.0 * cost / freedom(problem, tied=True)) if whole else inside
         return FittedModel(
             with_values(problem.system, dict(zip(values(problem.system), moved))), names, free, found.minimum.value, cost,
-            float(misfit), np.asarray(stats["schur"]), np.asarray(stats["pull"]), np.sum(problem.directions, axis=0), tied,
+            float(misfit), np.asarray(stats["schur"]), np.asarray(stats["pull"]), np.sum(problem.directions, axis=0), whole,
             found.converged, len(free) * float(np.log(rows)), correlation_length(residual), int(stats["steps"]),
-            found.tie, found.log_evidence, inside, found.stops,
+            found.tie, found.log_evidence, inside, 0.0 if whole else self._rest(found), found.stops,
         )  # fmt: skip
+

@@ -107,7 +107,7 @@ def continued(
     best = way.best
     if way.height(TIGHTEST) >= way.height(best) - WITHIN_CHANCE:
         best = TIGHTEST
-    at = _tied(problem, best)
+    at = tied(problem, best)
     minimum = minimise(at, way.reached.get(best, start), Levenberg(limit=LAST, atol=CLOSELY))
     done = int(minimum.stats["steps"]) < LAST
     return Continued(at, minimum, log_evidence(at, minimum), tuple(way.stops), done)
@@ -124,7 +124,7 @@ class _Way:
     def along(self, ties: Iterable[float], unknowns: Unknowns) -> None:
         """Fit with one tie after the other, each from where the last one ended, as long as the evidence does not fall."""
         for tie in ties:
-            at = _tied(self.problem, tie)
+            at = tied(self.problem, tie)
             how = Levenberg(limit=BETWEEN if tie < SHARP else LAST, atol=ROUGHLY)
             minimum = minimise(_softened(at, self.speeds), unknowns, how)
             highest = self.height(self.best) if self.stops else -np.inf
@@ -170,7 +170,8 @@ def _looser(first: float) -> Iterator[float]:
         tie = tie / FINER
 
 
-def _tied(problem: Problem, tie: float) -> Problem:
+def tied(problem: Problem, tie: float) -> Problem:
+    """The same problem with ties of another weight."""
     return eqx.tree_at(lambda p: p.tie, problem, np.asarray(float(tie)))
 
 
