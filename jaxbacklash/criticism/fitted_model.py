@@ -27,7 +27,8 @@ class FittedModel(Trial):
 
     @property
     def criterion(self) -> float:
-        """Bayesian information criterion: minus twice the log evidence and ln N a parameter (Schwarz 1978). Less is better."""
+        """Bayesian information criterion: minus twice the log evidence, ln N a parameter (Schwarz 1978), and minus twice the log
+        prior of the laws. Less is better."""
         return self.penalty - 2.0 * self.log_evidence
 
     @property

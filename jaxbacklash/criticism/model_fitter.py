@@ -19,6 +19,7 @@ from ..mechanics import AbstractEffect
 from ..parameters import values, with_values
 from ..records import Record
 from ..system import System
+from .evidence import measures_only
 from .fitted_model import FittedModel
 from .workbench import Workbench, correlation_length
 
@@ -27,6 +28,9 @@ SHOOTING = 0.025
 the time in which a missing torque changes."""
 LOOSE = 1e-2
 """Weight of the ties with which a model is begun at most, whatever its neighbour ended with: it may lack what that one has."""
+
+MEASURING = 2.0
+"""Minus twice the log prior odds of a fault of the measuring chain against a law of the joint."""
 
 
 class ModelFitter(Workbench):
@@ -81,6 +85,10 @@ class ModelFitter(Workbench):
         """Root mean square speed [rad/s] at which each law of dry friction slides, by name."""
         return {n: float(np.sqrt(np.mean(self.sliding(e.port) ** 2))) for n, e in effects.items() if e.slides}
 
+    def _doubt(self, names: frozenset[str]) -> float:
+        """Minus twice the log prior of a set of laws: what measures only is the less likely of two that do the same."""
+        return MEASURING * sum(measures_only(self.laws[n]) for n in names)
+
     def _rest(self, found: Continued) -> float:
         """By how much minus twice the log evidence is above that of one trajectory that leaves noise alone.
 
@@ -106,7 +114,7 @@ class ModelFitter(Workbench):
         return FittedModel(
             with_values(problem.system, dict(zip(values(problem.system), moved))), names, free, found.minimum.value, cost,
             float(misfit), np.asarray(stats["schur"]), np.asarray(stats["pull"]), np.sum(problem.directions, axis=0), whole,
-            found.converged, len(free) * float(np.log(rows)), correlation_length(residual), int(stats["steps"]),
+            found.converged, len(free) * float(np.log(rows)) + self._doubt(names), correlation_length(residual), int(stats["steps"]),
             found.tie, found.log_evidence, inside, 0.0 if whole else self._rest(found), found.stops,
         )  # fmt: skip
 
