@@ -9,14 +9,13 @@ from jaxbacklash.errors import BadInput
 from . import time_axis
 from .checks import number, wrong
 from .columns import Picked
+from .findings.stamps import time_unit
 from .header_units import split_unit
 from .options import ReadOptions
+from .stated_rate import counts_rows, gap_told, no_times, of_one_rate
 from .table import Table
 from .times import seconds
 from .units import TIME, spelt
-
-SAME_RATE = 0.01
-"""Relative difference of a stated rate from that of the stamps below which bursts and repeated stamps may explain it."""
 
 
 def times_of(table: Table, picked: Picked, options: ReadOptions, where: str) -> tuple[np.ndarray, list[str]]:
@@ -33,18 +32,20 @@ def times_of(table: Table, picked: Picked, options: ReadOptions, where: str) -> 
             return np.arange(column.values.size) / options.rate, []
         assert column.clock is not None
         return column.clock, []
+    column = picked.channels["t"]
+    if options.rate is not None and no_times(column, options.units.get("t")):
+        unused = f'"{column.name}", in {column.unit}, is not used'
+        even = np.arange(column.values.size) / options.rate
+        return even, [f"the rows are taken to be even at {number(options.rate)} Hz; {unused}"]
     t, notes = clock_of(table, picked.numbers["t"], options.units.get("t"), where)
     if options.rate is None:
         return t, notes
     even = np.arange(t.size) / options.rate
-    span = float(t[-1] - t[0]) if t.size else 0.0
-    known = (t.size - 1) / span if np.isfinite(span) and span > 0.0 else None
-    if known is not None and abs(known / options.rate - 1.0) > SAME_RATE:
-        found = f"{number(known)} samples per second by its times, and --rate {number(options.rate)}"
-        wanted = f"one rate: leave --rate out, or pass --rate {known:.6g}"
-        raise wrong(f"{where}, column {picked.channels['t'].name}", found, wanted)
-    unused = picked.channels["t"].name
-    return even, [f'the rows are taken to be even at {number(options.rate)} Hz; the times of "{unused}" are not used']
+    if counts_rows(column, options.units.get("t")):
+        return even, [f'"{column.name}" counts the rows, which are taken to be even at {number(options.rate)} Hz']
+    of_one_rate(t, options.rate, column, where)
+    unused = f'the times of "{column.name}" are not used{gap_told(t)}'
+    return even, [f"the rows are taken to be even at {number(options.rate)} Hz; {unused}"]
 
 
 def clock_of(table: Table, index: int, unit: str | None, where: str) -> tuple[np.ndarray, list[str]]:
@@ -55,7 +56,10 @@ def clock_of(table: Table, index: int, unit: str | None, where: str) -> tuple[np
         return t, [note] if note else []
     stated = unit or (spelt("t", column.unit) if column.unit else None)
     if column.unit and stated is None:
-        wanted = f"one of {', '.join(TIME)}, said with --unit t=UNIT"
+        known = column.values[np.isfinite(column.values)]
+        asked = time_unit(known) if known.size > 1 else []
+        meant = asked[0].remedy if asked else "--unit t=s"
+        wanted = f"one of {', '.join(TIME)}: pass --rate HZ, the samples per second, or {meant} if that is its unit"
         raise wrong(f"{where}, column {column.name}", f'the unit "{column.unit}" for times', wanted)
     if stated is None:
         t, note = seconds(column.values, "", where, column.name)
@@ -82,7 +86,9 @@ def own_clock(table: Table, picked: Picked, channel: str, options: ReadOptions, 
         bare = split_unit(other.name)[0].lower()
         alike = bare == common or bare.startswith((f"{common}_", f"{common} ", "time"))
         if alike and n not in picked.numbers.values():
-            times, _ = clock_of(table, n, options.units.get("t"), where)
+            # What is said of t holds for the others that state no unit of their own.
+            unit = None if spelt("t", other.unit) else options.units.get("t")
+            times, _ = clock_of(table, n, unit, where)
             if times.size and np.all(np.diff(times[np.isfinite(times)]) > 0):
                 return times, f"#{n + 1} {other.name}"
     return None

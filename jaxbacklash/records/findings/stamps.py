@@ -44,7 +44,8 @@ def stamps(t: np.ndarray) -> list[Finding]:
         again = back.size <= FEW and bool(np.all(steps[back] < -FEW * np.median(np.abs(steps))))
         remedy = f"--to {t[row]:.9g}" if again else f"--rate {_round(t):.6g}"
         return [Finding("backwards", REFUSE, "t", f"{what}{AGAIN if again else ''}", remedy, (row,))]
-    return [*_bursts(t, steps), *time_unit(t)]
+    # The unit first: the rate of bursts is as wrong as the unit is.
+    return [*time_unit(t), *_bursts(t, steps)]
 
 
 def rate_of(t: np.ndarray) -> float:
@@ -82,6 +83,23 @@ def rate_of(t: np.ndarray) -> float:
         return 1.0 / slope
     near = steps[(steps > usual / 2) & (steps < 1.5 * usual)]
     return 1.0 / float(np.mean(near))
+
+
+def packet(t: np.ndarray) -> float:
+    """How long samples that share a stamp, or come in a burst, last [s]: by so much a record's first and last time may be off.
+
+    Parameters
+    ----------
+    t : array of shape (N,), s, N >= 2
+
+    Returns
+    -------
+    float
+        0 where every sample has a time of its own.
+    """
+    steps = np.diff(t)
+    tiny = steps < TINY * float(np.mean(steps))
+    return float(np.median(steps[~tiny])) if np.count_nonzero(tiny) > MANY * steps.size else 0.0
 
 
 def _line(t: np.ndarray) -> tuple[float, float]:
@@ -122,6 +140,10 @@ def _bursts(t: np.ndarray, steps: np.ndarray) -> list[Finding]:
         return []
     else:
         what = f"repeats at {listed_rows(same + 1)}; if the samples are even, {rate:.6g} Hz fits them"
+    if t.size < SHORTEST * rate:
+        lasts = f"lasts {t.size / rate:.3g} s in all, less than any record, so that its unit may be another"
+        what = f"{what.partition(';')[0]} and {lasts}"
+        return [Finding("bursts", ASK, "t", what, "--unit t=s", tuple((same + 1).tolist()), rate)]
     return [Finding("bursts", ASK, "t", what, f"--rate {rate:.6g}", tuple((same + 1).tolist()), rate)]
 
 
@@ -130,7 +152,8 @@ def time_unit(t: np.ndarray) -> list[Finding]:
     steps = np.diff(t)
     if steps.max() < SLOW:
         return []
-    step = float(np.median(steps))
+    # Within a packet most steps are far shorter than a sample.
+    step = float(np.mean(steps)) if packet(t) else float(np.median(steps))
     if step < SLOW:
         return []
     name, short, factor = next(
