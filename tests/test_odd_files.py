@@ -32,6 +32,16 @@ def test_an_odd_file_is_read_right_or_rightly_refused(tmp_path, index):
     assert not verdict.failed, f"{verdict.found}: {verdict.command}\n{verdict.detail}"
 
 
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(
+    "names", ["bursts unit_row", "repeated_stamps unit_row", "name_twice unit_row", "repeated_stamps two_clocks"]
+)
+def test_units_are_those_of_all_columns_and_one_remedy_answers_one_kind(tmp_path, names, seed):
+    """Pairs that the plan above does not draw: a row of units over times of another kind, a drift behind stamps that repeat."""
+    verdict = judge(draft_of([KINDS[name] for name in names.split()], 0, seed), tmp_path)
+    assert not verdict.failed, f"{verdict.found}: {verdict.command}\n{verdict.detail}"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("index", FITTED, ids=[NAMES[index] for index in FITTED])
 def test_no_interval_excludes_the_truth_without_a_word(tmp_path, index):

@@ -38,8 +38,8 @@ class Draft:
     """A file to be and a command for it.
 
     The writing fields say how the table looks; ``options`` are the words a person would type beside ``fit FILE``; ``right`` is
-    what to expect, and ``words`` holds for each kind the regular expressions that its refusal must match, all of them; the last
-    one is the cause, which a word beside an answer must match.
+    what to expect of the file as it stands, ``rights`` of each of its kinds, and ``words`` holds for each kind the regular
+    expressions that its refusal must match, all of them; the last one is the cause, which a word beside an answer must match.
     ``remedy`` picks among several texts to paste the one that is true of this file. ``reference`` is the record in SI as it
     should arrive, within ``tolerance`` [rad]; None where no record should arrive.
     """
@@ -67,6 +67,7 @@ class Draft:
     options: list[str] = field(default_factory=list)
     effects: bool = True
     right: str = READ
+    rights: list[str] = field(default_factory=list)
     words: list[tuple[str, ...]] = field(default_factory=list)
     remedy: str = ""
     truth: dict[str, float] | None = field(default_factory=lambda: dict(TRUTH))
@@ -92,6 +93,7 @@ class Draft:
         """State what is right; what one kind refuses another does not make good."""
         order = (READ, SAID, REFUSED)
         self.right = max(self.right, right, key=order.index)
+        self.rights.append(right)
         if words:
             self.words.append(words)
         self.remedy = remedy or self.remedy

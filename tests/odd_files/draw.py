@@ -45,8 +45,11 @@ def dressed(kinds: list[Kind], rng: np.random.Generator) -> Draft:
 
 
 def _stage(each: Kind) -> int:
+    """0 for what is wrong with values, 2 for units, in which all columns are written, and 1 for the rest."""
     order = ("x z", "x", "x z time")
-    return 0 if " ".join(sorted(each.touches)) in (" ".join(sorted(part.split())) for part in order) else 1
+    if " ".join(sorted(each.touches)) in (" ".join(sorted(part.split())) for part in order):
+        return 0
+    return 2 if {"x", "z", "units"} <= each.touches else 1
 
 
 def _together(one: Kind, other: Kind) -> bool:

@@ -61,7 +61,9 @@ def judged(draft: Draft, folder: Path, words: Sequence[str], full: bool, hop: in
             return Verdict(READ, command, outcome.last)
         if draft.right != READ and told(draft, outcome):
             return Verdict(SAID, command, outcome.last)
-        return Verdict(OPEN if draft.right == SAID and not full else WRONG, command, detail)
+        # Once what one kind is refused for is answered, what another shows to a fit alone is still open.
+        right = SAID if hop and SAID in draft.rights else draft.right
+        return Verdict(OPEN if right == SAID and not full else WRONG, command, detail)
     if len(outcome.sentences) != 1:
         return Verdict(MESSAGE, command, f"{len(outcome.sentences)} sentences: {outcome.err[-300:]}")
     sentence = outcome.sentences[0]

@@ -74,7 +74,8 @@ def unit_row(draft: Draft, rng) -> None:
     angle, time = pick(rng, "deg", "rad", "mrad"), pick(rng, "s", "ms")
     _in_units(draft, angle, time)
     left, right = pick(rng, ("", ""), ("[", "]"), ("(", ")"))
-    draft.below_header = [draft.separator.join(f"{left}{unit}{right}" for unit in (time, angle, angle))]
+    units = (angle if column.channel in ("x", "z") else time for column in draft.columns)
+    draft.below_header = [draft.separator.join(f"{left}{unit}{right}" for unit in units)]
 
 
 @kind("names x z container units")
@@ -97,8 +98,9 @@ def degree_sign(draft: Draft, rng) -> None:
 
 
 def _in_units(draft: Draft, angle: str, time: str) -> None:
-    if time == "ms":
-        draft.column("t").values = 1e3 * draft.column("t").values
+    for column in draft.columns if time == "ms" else ():
+        if column.channel not in ("x", "z"):  # t, and the times that a channel has of its own
+            column.values = 1e3 * column.values
     for channel in "xz":
         draft.column(channel).values = PER_RADIAN[angle] * draft.column(channel).values
 
