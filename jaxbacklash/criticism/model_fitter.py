@@ -114,7 +114,7 @@ class ModelFitter(Workbench):
         return FittedModel(
             with_values(problem.system, dict(zip(values(problem.system), moved))), names, free, found.minimum.value, cost,
             float(misfit), np.asarray(stats["schur"]), np.asarray(stats["pull"]), np.sum(problem.directions, axis=0), whole,
-            found.converged, len(free) * float(np.log(rows)) + self._doubt(names), correlation_length(residual), int(stats["steps"]),
-            found.tie, found.log_evidence, inside, 0.0 if whole else self._rest(found), found.stops,
+            found.converged, len(free) * float(np.log(rows)) + self._doubt(names), correlation_length(residual),
+            int(stats["steps"]), found.tie, found.log_evidence, inside, 0.0 if whole else self._rest(found), found.stops,
         )  # fmt: skip
 
