@@ -16,7 +16,7 @@ Georg, Introduction to Numerical Continuation Methods (2003).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import equinox as eqx
@@ -31,7 +31,7 @@ LOOSEST, TIGHTEST = 1e-4, 100.0
 """Weights of the ties between windows from which on to which a fit goes: the first lets a window's end miss the next one's start
 by two hundred times the noise, with the last the windows are one trajectory."""
 FINER = 10.0
-"""Factor by which the weight of the ties grows from one fit to the next."""
+"""Factor by which the weight of the ties grows from one fit to the next, its root where that was too much."""
 FALLEN = 3.0
 """Fall of the log evidence below its highest from which on tighter ties are not tried: a likelihood of a twentieth."""
 WITHIN_CHANCE = 1.92
@@ -101,9 +101,9 @@ def continued(
     True
     """
     way = _Way(problem, speeds or {})
-    way.along(_tighter(first), start)
+    way.tighten(first, start)
     if way.best == first:
-        way.along(_looser(first), way.reached.get(first, start))
+        way.loosen(first, way.reached.get(first, start))
     best = way.best
     if way.height(TIGHTEST) >= way.height(best) - WITHIN_CHANCE:
         best = TIGHTEST
@@ -121,17 +121,41 @@ class _Way:
         self.stops: list[Stop] = []
         self.reached: dict[float, Unknowns] = {}
 
-    def along(self, ties: Iterable[float], unknowns: Unknowns) -> None:
-        """Fit with one tie after the other, each from where the last one ended, as long as the evidence does not fall."""
-        for tie in ties:
-            at = tied(self.problem, tie)
-            how = Levenberg(limit=BETWEEN if tie < SHARP else LAST, atol=ROUGHLY)
-            minimum = minimise(_softened(at, self.speeds), unknowns, how)
-            highest = self.height(self.best) if self.stops else -np.inf
-            self.stops.append(Stop(tie, log_evidence(at, minimum), int(minimum.stats["steps"])))
-            if not self.stops[-1].log_evidence >= highest - FALLEN:
+    def tighten(self, first: float, start: Unknowns) -> None:
+        """Fit with ever tighter ties, each from where the last one ended, as long as the evidence does not fall; where it falls
+        over a step, a shorter one is tried."""
+        factor = FINER
+        if not self.rises(first, start):
+            return
+        tie = first
+        while tie < TIGHTEST:
+            further = min(tie * factor, TIGHTEST)
+            # Factors of ten end a little beside powers of ten.
+            further = TIGHTEST if further > 0.9 * TIGHTEST else further
+            if self.rises(further, self.reached[tie]):
+                tie = further
+            elif factor == FINER:
+                factor = float(np.sqrt(FINER))
+            else:
                 return
-            unknowns = self.reached[tie] = minimum.value
+
+    def loosen(self, first: float, start: Unknowns) -> None:
+        """Fit with ever looser ties as long as the evidence does not fall."""
+        tie = first / FINER
+        while tie > 0.5 * LOOSEST and self.rises(tie, start):
+            start, tie = self.reached[tie], tie / FINER
+
+    def rises(self, tie: float, unknowns: Unknowns) -> bool:
+        """Fit with these ties, and tell whether the evidence is not below its highest so far."""
+        at = tied(self.problem, tie)
+        how = Levenberg(limit=BETWEEN if tie < SHARP else LAST, atol=ROUGHLY)
+        minimum = minimise(_softened(at, self.speeds), unknowns, how)
+        highest = self.height(self.best) if self.stops else -np.inf
+        self.stops.append(Stop(tie, log_evidence(at, minimum), int(minimum.stats["steps"])))
+        if not np.isfinite(self.stops[-1].log_evidence) or self.stops[-1].log_evidence < highest - FALLEN:
+            return False
+        self.reached[tie] = minimum.value
+        return True
 
     @property
     def best(self) -> float:
@@ -153,21 +177,6 @@ def log_evidence(problem: Problem, minimum: Minimum) -> float:
     ties = np.asarray(tie_weights(problem, minimum.value.starts.shape[0]))[on]
     found = np.sum(np.log(ties)) - minimum.stats["cost"] - 0.5 * minimum.stats["log_determinant"]
     return float(found) if np.isfinite(found) else -np.inf
-
-
-def _tighter(first: float) -> Iterator[float]:
-    tie = first
-    while tie < 0.5 * TIGHTEST:
-        yield tie
-        tie = tie * FINER
-    yield TIGHTEST
-
-
-def _looser(first: float) -> Iterator[float]:
-    tie = first / FINER
-    while tie > 0.5 * LOOSEST:
-        yield tie
-        tie = tie / FINER
 
 
 def tied(problem: Problem, tie: float) -> Problem:
