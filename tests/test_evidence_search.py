@@ -36,6 +36,7 @@ def test_a_hidden_weight_is_named_at_its_size():
     assert search.path[0].evidence["gravity"] > search.demand
 
 
+@pytest.mark.slow
 def test_dry_friction_is_followed_to_where_it_is_sharp():
     _, model, _, effects = searched("coulomb_joint", "multisine", 5, Tc=4.0)
     assert model.names == {"coulomb_joint"}
