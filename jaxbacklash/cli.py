@@ -132,7 +132,7 @@ def look(
     command.run(file, out=out, as_json=json, reading=reading)
 
 
-@computes(epilog="Example: jaxbacklash fit run1.csv --inertia 3.16 --columns x=enc1,z=enc2 --unit x=deg,z=deg --out fit1")
+@computes(epilog="Example: jaxbacklash fit run1.csv --inertia 3.16 --effects gravity --out fit1")
 @reads
 def fit(
     records: Annotated[
