@@ -131,3 +131,16 @@ def test_a_second_clock_keeps_the_unit_that_it_states(tmp_path):
 @pytest.mark.parametrize("t", [np.full(80, np.nan), np.array([0.0]), np.array([0.0, np.nan, 2.0])], ids=["none", "one", "three"])
 def test_a_unit_of_no_time_over_hardly_any_times_is_refused_too(tmp_path, t):
     assert "--rate HZ" in str(refused(written(tmp_path, t, "t [mrad],x,z"), ReadOptions()))
+
+
+@pytest.mark.parametrize("t", [REPEATED, np.where(ROWS == 900, EVEN[899], EVEN), np.where(ROWS == 900, EVEN[890], EVEN)])
+def test_missing_cells_over_times_that_do_not_go_on_are_no_crash(tmp_path, t):
+    path = written(tmp_path, t)
+    lines = path.read_text().splitlines()
+    lines[500] = lines[500].rpartition(",")[0] + ",nan"
+    path.write_text("\n".join(lines) + "\n")
+    why = refused(path, ReadOptions(resample=True))
+    assert "column t" in str(why)
+    assert "--rate 500" in str(why)
+    record = read(path, ReadOptions(resample=True, rate=RATE))
+    assert np.isfinite(record.channels["z"]).all()

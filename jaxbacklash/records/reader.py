@@ -123,9 +123,8 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
     if compared:
         t, channels, extras, used = _only(_covered(t, channels), t, channels, extras, used)
     t, channels, extras, used = _only(_between(t, options, where), t, channels, extras, used)
-    if options.resample:
-        channels = bridged(t, channels, used, where)
-    for name, values in {"t": t, **channels}.items():
+    # What is missing can be bridged only over times that go on: those are judged first.
+    for name, values in ({"t": t} if options.resample else {"t": t, **channels}).items():
         checks.finite(values, name, where, used.place)
     stated = frozenset(options.units) | {name for name, column in picked.channels.items() if column.unit}
     findings = used.said(find_in_times(t, options, units_stated=stated))
@@ -134,6 +133,10 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
         _without_gaps(t, options, where)
     except BadInput as why:
         raise BadInput(used.told(str(why)), remedy=why.remedy) from None
+    if options.resample:
+        channels = bridged(t, channels, used, where)
+        for name, values in channels.items():
+            checks.finite(values, name, where, used.place)
     whole, held = t, channels
     t, channels, extras = before(t, channels, extras, options)
     used = _thinned(whole, held, t, options, used, where)
