@@ -115,6 +115,17 @@ def test_mistakes_end_in_one_sentence(call, tmp_path, header, words, said):
     assert said in sentence(err)
 
 
+def test_a_long_series_that_is_sampled_too_finely_is_given_a_rate(call, tmp_path):
+    t = np.arange(450_000) / 50e3
+    z = 0.01 * np.sin(2.0 * np.pi * 3.0 * t) + 1e-6 * np.random.default_rng(0).standard_normal(t.size)
+    np.savez(tmp_path / "fine.npz", t=t, z=z)
+    code, _, err = call("chaos", tmp_path / "fine.npz", "--channel", "z")
+    assert code == 2
+    assert "450000 samples at 50000 Hz; the motion needs" in sentence(err)
+    rate = sentence(err).rpartition("--resample-rate ")[2].rstrip(".`")
+    assert 60.0 <= float(rate) <= 1000.0
+
+
 def test_uneven_times_are_refused(call, tmp_path):
     t = np.sort(np.random.default_rng(5).uniform(0.0, 10.0, 800))
     code, _, err = call("chaos", write(tmp_path / "uneven.csv", "t,z", t, np.sin(t)))

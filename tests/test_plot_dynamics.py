@@ -1,5 +1,7 @@
 """`jb.plot` of skeletons, responses, chaos, maps and signatures: the numbers that are given are the numbers that are drawn."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -77,6 +79,11 @@ def test_chaos(chaotic):
     assert sum(bar.get_height() for bar in left.patches) == found.surrogates.count
     assert np.allclose(left.get_lines()[0].get_xdata(), found.surrogates.statistic)
     assert curve(right, found.walk.p, found.walk.q)
+    untold = np.where(np.arange(found.surrogates.count) < 3, found.surrogates.surrogates, np.nan)
+    for surrogates, bars in ((untold, 3), (np.full_like(untold, np.nan), 0)):
+        some = dataclasses.replace(found, surrogates=dataclasses.replace(found.surrogates, surrogates=surrogates))
+        left = several(plot.surrogates, 2, some)[0]
+        assert sum(bar.get_height() for bar in left.patches) == bars
     values = found.mean + found.deviation * (found.cleaned.series if found.cleaned is not None else found.series)
     later = found.delay.samples
     assert curve(one(plot.attractor, found), values[:-later], values[later:])

@@ -10,6 +10,7 @@ import numpy as np
 
 from .. import __version__
 from ..errors import BadInput
+from ..fitting.size import rate_for
 from ..records import MeasuredSeries
 from ..report.chaos_result import chaos_json
 from ..timeseries import chaos
@@ -19,6 +20,8 @@ from .reading import Reading
 
 MOST = 60_000_000
 """Values of all surrogates together at most, 0.5 GB: the usual 39 of a million and a half samples."""
+LONG = 400_000
+"""Samples from which on a series is asked whether its motion needs its rate: a million take a minute."""
 DRIVES = {"x": "base motion", "F": "force"}
 
 
@@ -38,6 +41,7 @@ def run(
     source = reading.series(path, channel)
     bounded(f"--surrogate-count {count} of {source.values.size} samples", count * source.values.size, MOST, "values in all",
             "take fewer surrogates, or a lower rate with --resample-rate")  # fmt: skip
+    _too_fine(path, source)
     folder = out_folder(out)
     with progress(as_json) as tell:
         try:
@@ -63,6 +67,17 @@ def run(
     print(found)
     if folder is not None:
         print(f"written: {folder}/result.json, report.html")
+
+
+def _too_fine(path: Path, source: MeasuredSeries) -> None:
+    """Refuse a long series that is sampled much faster than its motion needs, and propose a rate."""
+    rate = 1.0 / source.dt
+    if source.values.size <= LONG or (wanted := rate_for(source.values, source.dt)) > 0.5 * rate:
+        return
+    raise BadInput(
+        f"{path}, channel {source.name}: has {source.values.size} samples at {rate:.6g} Hz; the motion needs {wanted:.6g} Hz, at "
+        f"which it is judged in seconds: add --resample-rate {wanted:.6g}"
+    )
 
 
 def _across(source: MeasuredSeries) -> np.ndarray | None:

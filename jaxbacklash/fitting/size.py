@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+import numpy as np
+
 from ..errors import BadInput
 from ..records import Record
 from ..signals import highest_frequency
@@ -50,8 +52,12 @@ def check_size(records: Iterable[Record]) -> None:
 
 def needed_rate(record: Record) -> float:
     """Rate [Hz] that the motion of a record needs: 1, 2 or 5 times a power of ten."""
-    values = record.channels[record.observed_name][:LOOKED_AT]
-    fastest = highest_frequency(values, record.dt, POWER)
+    return rate_for(record.channels[record.observed_name], record.dt)
+
+
+def rate_for(values: np.ndarray, dt: float) -> float:
+    """Rate [Hz] that the motion of a series (N,), sampled every ``dt`` [s], needs: 1, 2 or 5 times a power of ten."""
+    fastest = highest_frequency(values[:LOOKED_AT], dt, POWER)
     wanted = max(SAMPLES_A_PERIOD * fastest, SLOWEST)
     decade = 10.0 ** math.floor(math.log10(wanted) + 1e-9)
     return float(next(decade * step for step in (1, 2, 5, 10) if decade * step >= wanted * (1.0 - 1e-9)))

@@ -163,9 +163,12 @@ def surrogates(found: ChaosReport, *, ax: Where = None) -> list[Axes]:
     left = axes[0]
     one = found.surrogates
     name = f"{one.count} {one.kind.upper()} surrogates"
-    left.hist(one.surrogates, bins=max(6, one.count // 4), color=GAP, alpha=0.7, label=name)
+    # Where neighbours are too few to predict from, there is no error to show.
+    told = one.surrogates[np.isfinite(one.surrogates)]
+    name += "" if told.size == one.count else f", {told.size} of them told"
+    left.hist(told, bins=max(6, one.count // 4), color=GAP, alpha=0.7, label=name)
     left.axvline(one.statistic, color=MODEL, lw=2.0, label="this series")
-    spread = np.concatenate([one.surrogates, [one.statistic]])
+    spread = np.concatenate([told, [one.statistic] if np.isfinite(one.statistic) else [], [] if told.size else [0.0]])
     pad = 0.06 * float(np.ptp(spread)) + 1e-9
     left.set(xlabel="prediction error [standard deviations]", ylabel="surrogates", xlim=(spread.min() - pad, spread.max() + pad))
     left.set_ylim(0.0, 1.35 * left.get_ylim()[1])
