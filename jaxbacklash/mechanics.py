@@ -84,7 +84,8 @@ class AbstractEffect(eqx.Module):
     search for missing effects; ``slides`` True for dry friction, whose torque is ``dry`` against the direction of sliding at its
     port; ``absorbs`` names of simpler laws that this one contains, so that it takes their place instead of standing beside them
     (parameters of one name are then the same); ``yields`` parameters that the presence of another effect makes superfluous, and
-    that effect's name: held beside it.
+    that effect's name: held beside it; ``motions`` of a link for which the law makes sense, ``"turning"`` and ``"sliding"``;
+    ``joints`` in which it does something that the joint does not do already, ``"play"``, ``"spring"`` and ``"free"``.
     """
 
     states: ClassVar[tuple[str, ...]] = ()
@@ -95,6 +96,8 @@ class AbstractEffect(eqx.Module):
     slides: ClassVar[bool] = False
     absorbs: ClassVar[tuple[str, ...]] = ()
     yields: ClassVar[dict[str, str]] = {}
+    motions: ClassVar[tuple[str, ...]] = ("turning", "sliding")
+    joints: ClassVar[tuple[str, ...]] = ("play", "spring", "free")
 
     @classmethod
     def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
@@ -169,6 +172,11 @@ def canonical_name(effect: AbstractEffect | type[AbstractEffect]) -> str:
     """The name used by the command line, the JSON and the reports: ``TorqueRipple`` is ``torque_ripple``."""
     cls = effect if isinstance(effect, type) else type(effect)
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
+
+
+def motion_of(translational: bool) -> str:
+    """How a link moves, as `AbstractEffect.motions` names it: ``"sliding"`` for a translating mass, else ``"turning"``."""
+    return "sliding" if translational else "turning"
 
 
 def catalogue() -> dict[str, type[AbstractEffect]]:

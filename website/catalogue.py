@@ -63,6 +63,9 @@ def section(name: str, row: list[str], numbers: dict[str, float | None] | None) 
     what, law, _, port = row
     text = [f"### {name}\n", f"{what[:1].upper()}{what[1:]}. It acts {PORTS[port]}.\n" if port in ("joint", "ground") else
             f"{what[:1].upper()}{what[1:]}: {PORTS[port]}.\n", f"`{law}`\n"]  # fmt: skip
+    only = jb.catalogue()[name].motions
+    if len(only) == 1:
+        text.append(f"Only for a {only[0]} link: `refine` and `diagnose` do not propose it for any other.\n")
     text.append(parameters(name))
     picture = LAWS / f"{name}.svg"
     if picture.exists():

@@ -98,6 +98,7 @@ def separate(bench: Workbench, kept: Trial, rival: Trial, *, translational: bool
         except BadInput:  # such a sine moves nothing
             continue
         stage = Workbench(twin, bench.base, bench.base_free, bench.window, beside=bench.record)
+        stage.take_laws(bench.laws)
         missed = [error(stage, bench, trial) for trial in (kept, rival)]
         tried.append(Sine(amplitude, frequency, missed[1] / missed[0]))
     if not tried:

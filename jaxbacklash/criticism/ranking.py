@@ -21,6 +21,7 @@ from ..showing import Shown
 from ..system import System
 from .candidates import Candidate, rank
 from .evidence import gain
+from .laws_for import laws_for
 from .search import Search
 from .steps import Stage
 from .tried import WHOLE
@@ -133,6 +134,7 @@ def rank_effects(fit: Fit, *, window: float | None = None) -> Ranking:
     bare = System(full.inertia, full.contact, full.damper, {}, full.observed)
     own = tuple(name for name in fit.free if name.partition(".")[0] not in full.effects)
     bench = Workbench(fit.records[0], bare, own, window)
+    bench.take_laws(laws_for(bare, translational=fit.translational))
     search = Search(bench)
     trial = search.settle(bench.fit(dict(full.effects), joint=full, patience=WHOLE))
     ranking = {c.name: c for c in rank(bench, trial)}

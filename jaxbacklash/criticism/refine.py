@@ -35,6 +35,7 @@ from .either import either
 from .evidence_search import EvidenceSearch
 from .experiment import separate
 from .foresight import Foresight
+from .laws_for import laws_for
 from .model_fitter import ModelFitter
 from .refinement import Refinement
 from .search import Search
@@ -117,6 +118,7 @@ def refine(
     if engine not in ENGINES:
         raise BadInput(f"engine {engine!r}: wanted one of {', '.join(ENGINES)}")
     bench = (ModelFitter if engine == "evidence" else Workbench)(record, system, names, window, beside=heldout)
+    bench.take_laws(laws_for(system, translational=translational))
     per_inertia = inertia is None and record.kind not in ABSOLUTE and model != "given"
     judged = _Judge(bench, heldout, model, per_inertia, translational, start, settled)
     clock["prepare"] = time.perf_counter()

@@ -25,12 +25,13 @@ from ..fitting.search import ADEQUATE, LOOSE, NEAR, TIES, freedom, tie_windows
 from ..fitting.setup import first_guess, free_names, held_system, make_problem, read_through
 from ..fitting.softened import through_softened
 from ..fitting.windows import Layout, Windows
-from ..mechanics import AbstractEffect, canonical_name, catalogue
+from ..mechanics import AbstractEffect, catalogue
 from ..parameters import specs, values, with_values
 from ..records import Record
 from ..signals import noise_of_speed
 from ..system import System
 from .along_motion import own_states
+from .laws_for import laws_for
 from .quick_look import QuickLook
 
 COLUMNS = 10
@@ -119,8 +120,9 @@ class Workbench:
         self.windows, self.layout, self.group = prepare(self.pace, [record], window, intervals=least, shooting=shooting)
         self.ties = np.asarray(self.windows.tie)
         self.noise_factor = 1.0
-        self.laws = {n: c for n, c in catalogue().items() if c.catalogued and applicable(c, base)}
-        self.static = {n: c for n, c in self.laws.items() if not c.states}
+        self.laws: dict[str, type[AbstractEffect]]
+        self.static: dict[str, type[AbstractEffect]]
+        self.take_laws(laws_for(base))
         self.quick = QuickLook(record)
         self.fits, self.most = 0, float(MOST_FITS)
 
@@ -130,6 +132,11 @@ class Workbench:
         if self.quick.blind:
             return 0.0
         return noise_of_speed(self.record.t, self.record.channels[self.record.observed_name], self.layout.noise[0])
+
+    def take_laws(self, laws: dict[str, type[AbstractEffect]]) -> None:
+        """Propose these laws and no others, by canonical name; the default is `laws_for` a link that turns or slides."""
+        self.laws = laws
+        self.static = {n: c for n, c in laws.items() if not c.states}
 
     def _count(self) -> None:
         if self.fits >= self.most:
@@ -334,19 +341,6 @@ def with_friction(record: Record, base: System, free: tuple[str, ...], names: tu
         return None
     known = None if "inertia" in free else float(base.inertia)
     return held_system(record, "joint" if base.has_play else "linear", known, names)[0]
-
-
-def applicable(law: type[AbstractEffect], base: System) -> bool:
-    """Whether a law can act at all in a joint like this one: laws of the contact need a play or a spring.
-
-    Where the transmitted force is measured, friction that sticks in the joint is no function of the motion, and the gain of
-    the force sensor is one with the size of everything. An axis without a joint rubs on the ground alone.
-    """
-    if base.observed == "T" and ((law.slides and law.port == "joint") or canonical_name(law) == "sensor_gain"):
-        return False
-    if base.contact is None and canonical_name(law) == "coulomb_joint":
-        return False
-    return not (base.contact is None and getattr(law, "needs_contact", False))
 
 
 def strengths(effect: AbstractEffect) -> tuple[str, ...]:

@@ -16,6 +16,8 @@ class ContactDamping(AbstractEffect):
     The torque jumps at the edge of the play, where located steps end.
     """
 
+    joints: ClassVar[tuple[str, ...]] = ("play",)
+
     cc: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, scale=1.0)
 
     def torque(self, now: Instant) -> Scalar:
@@ -24,6 +26,8 @@ class ContactDamping(AbstractEffect):
 
 class HuntCrossley(AbstractEffect):
     r"""Contact damping that grows with the contact, :math:`T = -\chi |\delta| \dot z` (Hunt and Crossley, 1975)."""
+
+    joints: ClassVar[tuple[str, ...]] = ("play", "spring")
 
     chi: Scalar = param(unit="N m s/rad^2", null=0.0, lower=0.0, scale=100.0)
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from ..mechanics import AbstractEffect, Instant, Play
 from ..parameters import Scalar, param
 
 
 class GapDrift(AbstractEffect):
     r"""The play wears or closes, :math:`b(t) = b\,(1 + r t)`."""
+
+    joints: ClassVar[tuple[str, ...]] = ("play",)
 
     r: Scalar = param(unit="1/s", null=0.0, scale=1e-3)
 
@@ -17,6 +21,8 @@ class GapDrift(AbstractEffect):
 
 class StiffnessDrift(AbstractEffect):
     r"""The contact stiffness drifts, :math:`k(t) = k\,(1 + r t)`, so :math:`T = -k r t\,\delta` beside the contact spring."""
+
+    joints: ClassVar[tuple[str, ...]] = ("play", "spring")
 
     r: Scalar = param(unit="1/s", null=0.0, scale=1e-3)
 

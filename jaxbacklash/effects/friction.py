@@ -37,6 +37,7 @@ class CoulombJoint(AbstractEffect):
     Tc: Scalar = param(unit="N m", null=0.0, lower=0.0, scale=1.0)
     width: Scalar = param(unit="rad/s", default=1e-3, lower=0.0, fixed=True, label="regularisation of the sign")
     slides: ClassVar[bool] = True
+    joints: ClassVar[tuple[str, ...]] = ("play", "spring")
 
     def dry(self, now: Instant) -> Scalar:
         return self.Tc * jnp.ones_like(now.dz)

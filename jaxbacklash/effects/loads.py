@@ -20,6 +20,7 @@ class Gravity(AbstractEffect):
 
     G: Scalar = param(unit="N m", null=0.0, scale=10.0)
     port: ClassVar[str] = "ground"
+    motions: ClassVar[tuple[str, ...]] = ("turning",)
 
     def torque(self, now: Instant) -> Scalar:
         return self.G * jnp.sin(now.y)
@@ -30,6 +31,7 @@ class LinearGravity(AbstractEffect):
 
     G: Scalar = param(unit="N m", null=0.0, scale=10.0)
     port: ClassVar[str] = "ground"
+    motions: ClassVar[tuple[str, ...]] = ("turning",)
     catalogued: ClassVar[bool] = False
 
     def torque(self, now: Instant) -> Scalar:

@@ -13,6 +13,8 @@ from ..parameters import Scalar, param
 class CubicStiffness(AbstractEffect):
     r"""Hardening (or softening) contact, :math:`T = -k_3 \delta^3` with the deflection beyond the play."""
 
+    joints: ClassVar[tuple[str, ...]] = ("play", "spring")
+
     k3: Scalar = param(unit="N m/rad^3", null=0.0, scale=1e6)
 
     def torque(self, now: Instant) -> Scalar:
@@ -24,6 +26,8 @@ class AsymmetricStiffness(AbstractEffect):
 
     Where k drifts, both sides drift with it.
     """
+
+    joints: ClassVar[tuple[str, ...]] = ("play", "spring")
 
     a: Scalar = param(unit="1", null=0.0, lower=-1.0, upper=1.0, scale=0.01)
 
@@ -37,6 +41,7 @@ class GapSpring(AbstractEffect):
     A preload beside it does what :math:`z_0` does.
     """
 
+    joints: ClassVar[tuple[str, ...]] = ("play", "free")
     yields: ClassVar[dict[str, str]] = {"z0": "preload"}
 
     k1: Scalar = param(unit="N m/rad", null=0.0, lower=0.0, scale=100.0)
@@ -48,6 +53,8 @@ class GapSpring(AbstractEffect):
 
 class AsymmetricGap(AbstractEffect):
     r"""The play is centred at :math:`z_0`, not at zero."""
+
+    joints: ClassVar[tuple[str, ...]] = ("play",)
 
     z0: Scalar = param(unit="rad", null=0.0, scale=1e-3)
 

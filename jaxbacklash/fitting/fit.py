@@ -29,7 +29,7 @@ from .profile import with_profiles
 from .result import Fit
 from .score import Score, begin_anew, score
 from .search import Found, misfit, search, silent
-from .setup import base_system, free_names, make_problem
+from .setup import base_system, check_motion, free_names, make_problem
 from .size import check_size
 from .windows import Layout, Windows, crossing_time, cut
 
@@ -118,6 +118,7 @@ def fit(
         system, names, start = base_system(chosen[0], model, inertia, effects)
     else:
         names, model = free_names(system), "given"
+    check_motion(system, translational=translational)
     names = tuple(free) if free is not None else names
     windows, layout, group = prepare(system, chosen, window)
     alone = layout.noise

@@ -12,7 +12,7 @@ import numpy as np
 from ..compiled import kept_jit
 from ..effects import Contact, Damper, Spring
 from ..errors import BadInput
-from ..mechanics import AbstractEffect, Drive, canonical_name, catalogue
+from ..mechanics import AbstractEffect, Drive, canonical_name, catalogue, motion_of
 from ..parameters import ravel, specs, values, with_values
 from ..records import Record
 from ..system import System, observe
@@ -159,6 +159,25 @@ def add_effects(system: System, effects: Sequence[AbstractEffect | str]) -> Syst
             effect = known[effect].guesses(system)[0]
         system = system.with_effects(effect)
     return system
+
+
+def check_motion(system: System, *, translational: bool) -> None:
+    """Refuse effects that make no sense for how the link moves, such as gravity, G sin y, for a mass that slides.
+
+    Raises
+    ------
+    BadInput
+        With the first such effect's name.
+    """
+    motion = motion_of(translational)
+    odd = next((name for name, effect in system.effects.items() if motion not in effect.motions), None)
+    if odd is None:
+        return
+    law = (system.effects[odd].__doc__ or "").strip().partition("\n")[0].partition(",")[0].rstrip(".")
+    other, said = ("turning", "with --translation it slides") if translational else ("sliding", "without --translation it turns")
+    raise BadInput(
+        f"--effects {odd}: is a law of a {other} link ({law}), and {said}; wanted laws of a {motion} link, or the other option"
+    )
 
 
 def make_problem(system: System, windows: Windows, free: Sequence[str], *, tie: float = 0.0) -> Problem:

@@ -1,0 +1,48 @@
+"""Which laws of the catalogue a search may propose: those that can act in the joint, and that make sense for how its link moves.
+
+The one place where the catalogue of a search is made; `workbench` compiles a program with these laws, the search proposes them.
+"""
+
+from __future__ import annotations
+
+from ..mechanics import AbstractEffect, canonical_name, catalogue, motion_of
+from ..system import System
+
+
+def laws_for(base: System, *, translational: bool | None = None) -> dict[str, type[AbstractEffect]]:
+    """Laws that may be missing in a joint, by canonical name.
+
+    Parameters
+    ----------
+    base : the joint
+    translational : whether its link is a translating mass; None where it may turn or slide
+
+    Returns
+    -------
+    dict
+        Every law of `catalogue` that is not kept out by ``catalogued``, that `applicable` does not refuse, and whose ``motions``
+        hold that of the link.
+
+    Examples
+    --------
+    >>> from jaxbacklash.criticism.laws_for import laws_for
+    >>> joint = jb.base_motion_joint(inertia=3.16, backlash=0.026, stiffness=15000.0, damping=20.0)
+    >>> set(laws_for(joint)) - set(laws_for(joint, translational=True))
+    {'gravity'}
+    """
+    found = {name: law for name, law in catalogue().items() if law.catalogued and applicable(law, base)}
+    if translational is None:
+        return found
+    return {name: law for name, law in found.items() if motion_of(translational) in law.motions}
+
+
+def applicable(law: type[AbstractEffect], base: System) -> bool:
+    """Whether a law can act in a joint like this one, and does what the joint alone does not.
+
+    Where the transmitted force is measured, friction that sticks in the joint is no function of the motion, and the gain of
+    the force sensor is one with the size of everything.
+    """
+    if base.observed == "T" and ((law.slides and law.port == "joint") or canonical_name(law) == "sensor_gain"):
+        return False
+    kind = "free" if base.contact is None else "play" if base.has_play else "spring"
+    return kind in law.joints
