@@ -43,8 +43,8 @@ def one(rows: int, columns: int, periods: int, folder: str) -> None:
     jb.start()
     from jaxbacklash.dynamics.family import PaperCase
     from jaxbacklash.dynamics.follow import trace_exact
-    from jaxbacklash.dynamics.labels import write_netcdf
     from jaxbacklash.dynamics.maps import run_map
+    from jaxbacklash.dynamics.netcdf import write_netcdf
     from jaxbacklash.dynamics.request import request
 
     axes = {"inverse_alpha": np.linspace(1.0, 5.0, rows), "zeta": np.linspace(0.005, 0.03, columns)}

@@ -5,7 +5,6 @@ import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.criticism import missing_torque_of, smoother
-from jaxbacklash.criticism.chain import backward, factorise, forward, variances
 from jaxbacklash.criticism.tables import smoothness
 from jaxbacklash.effects.learned import basis, hats
 
@@ -18,31 +17,6 @@ def gravity():
     fit = jb.fit(record, inertia=rig.inertia, starts=1)
     latent = jb.missing_torque(fit)
     return fit, latent, jb.explain_torque(latent), rig, effects["gravity"]["G"], truth
-
-
-def test_chain_is_the_dense_matrix():
-    rng = np.random.default_rng(0)
-    windows, size = 4, 3
-    below = rng.standard_normal((windows, size, size))
-    diagonal = np.stack([a @ a.T + 12 * np.eye(size) for a in rng.standard_normal((windows, size, size))])
-    dense = np.zeros((windows * size, windows * size))
-    for w in range(windows):
-        own = slice(w * size, (w + 1) * size)
-        dense[own, own] = diagonal[w]
-        if w + 1 < windows:
-            after = slice((w + 1) * size, (w + 2) * size)
-            dense[after, own], dense[own, after] = below[w], below[w].T
-    right = rng.standard_normal((windows, size, 2))
-    # What stands beyond the windows used changes nothing.
-    beyond = [np.concatenate([part, rng.standard_normal((2, *part.shape[1:]))]) for part in (diagonal, below, right)]
-    factor = factorise(beyond[0], beyond[1], windows)
-    half = forward(factor, beyond[2])
-    products = np.einsum("wbi,wbj->ij", half, half)
-    solution = np.linalg.solve(dense, right.reshape(-1, 2))
-    assert float(factor.log_determinant) == pytest.approx(np.linalg.slogdet(dense)[1])
-    assert np.allclose(backward(factor, half)[:windows].reshape(-1, 2), solution)
-    assert np.allclose(products, right.reshape(-1, 2).T @ solution)
-    assert np.allclose(variances(factor)[:windows].ravel(), np.diag(np.linalg.inv(dense)))
 
 
 def test_gravity_shows_in_time(gravity):

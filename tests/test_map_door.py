@@ -27,6 +27,7 @@ def test_a_map_is_written_told_and_drawn(call, tmp_path):
         assert np.isfinite(map_.lyapunov).all()
     page = (tmp_path / "case1.html").read_text()
     assert page.count("<svg") == 2
+    assert "<pre>jaxbacklash map --inverse-alpha 1:5:6 " in page
     code, out, _ = call("map", *SMALL, "--out", "again.nc", "--json")
     told = json.loads(out)
     assert code == 0

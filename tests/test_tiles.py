@@ -14,8 +14,8 @@ pytest.importorskip("zarr")
 pytest.importorskip("xarray")
 
 from jaxbacklash.dynamics.family import PaperCase
-from jaxbacklash.dynamics.labels import write_netcdf
 from jaxbacklash.dynamics.maps import labelled_map, run_map
+from jaxbacklash.dynamics.netcdf import write_netcdf
 from jaxbacklash.dynamics.request import request
 from jaxbacklash.dynamics.tiles import TileStore
 from jaxbacklash.errors import BadInput
@@ -55,10 +55,11 @@ def test_a_store_holds_the_bits_of_the_map_in_memory(whole, tmp_path):
 def test_a_store_goes_into_its_file_some_chunks_at_a_time(tmp_path, monkeypatch, room):
     import xarray
 
-    from jaxbacklash.dynamics import labels
+    from jaxbacklash.dynamics import labels, netcdf
 
     pytest.importorskip("h5netcdf")
-    monkeypatch.setattr(labels, "ROOM", room)
+    for module in (labels, netcdf):
+        monkeypatch.setattr(module, "ROOM", room)
     stored = run_map(small(lanes=8), store=tmp_path / "store")
     assert (stored.poincare.chunks is not None) == (room < stored.poincare.size)  # small arrays are read at once
     write_netcdf(stored, tmp_path / "map.nc")
@@ -116,7 +117,7 @@ from jaxbacklash import enable_double_precision
 enable_double_precision()
 import numpy as np
 from tests.test_tiles import small
-from jaxbacklash.dynamics.labels import write_netcdf
+from jaxbacklash.dynamics.netcdf import write_netcdf
 from jaxbacklash.dynamics.maps import run_map
 tell = lambda words, share: (print(words, flush=True), sys.stdin.readline())  # nobody outruns who is to be killed
 write_netcdf(run_map(small(lanes=2), store=sys.argv[1], workers=1, progress=tell), sys.argv[2])

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import importlib
 import os
+import shlex
 import sys
 import time
 import warnings
@@ -15,11 +18,10 @@ import numpy as np
 from .. import __version__
 from ..dynamics.family import CASES, PaperCase
 from ..dynamics.follow import trace_exact
-from ..dynamics.labels import need_h5netcdf, write_netcdf
 from ..dynamics.maps import labelled_map
+from ..dynamics.netcdf import LARGEST, can_keep_tiles, write_netcdf
 from ..dynamics.request import Request, request
 from ..dynamics.tile_folder import claim, remove, used_alone
-from ..dynamics.tiles import need_zarr
 from ..errors import BadInput
 from ..whole_file import write_whole
 from .common import json_text, progress
@@ -40,7 +42,7 @@ def run(
     case: int, *, inverse_alpha: str | None, zeta: str | None, omega: str | None, periods: int, skip: int, samples: int | None,
     start: str, out: Path, as_json: bool,
 ) -> None:  # fmt: skip
-    """Check, compute tile by tile beside the output, write the map, draw it, and tell."""
+    """Check, compute tile by tile, beside the output where zarr keeps the tiles, write the map, draw it, and tell."""
     begun = time.perf_counter()
     if case not in CASES:
         raise BadInput(f"--case {case}: wanted 1 or 2")
@@ -51,20 +53,25 @@ def run(
         out.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise BadInput(f"--out {out}: cannot make its folder ({error.strerror})") from None
-    store = out.with_name(out.name + ".tiles")
-    claim(store, wanted.fingerprint())
+    store = out.with_name(out.name + ".tiles") if can_keep_tiles() else None
+    if store is None:
+        fits_in_memory(wanted)
+    else:
+        claim(store, wanted.fingerprint())
     ready = time.perf_counter()
     start_up = process_age() or ready - begun
-    with used_alone(store), progress(as_json) as tell, ThreadPoolExecutor(1) as aside:
+    alone = contextlib.nullcontext() if store is None else used_alone(store)
+    with alone, progress(as_json) as tell, ThreadPoolExecutor(1) as aside:
         tell("compiling", 0.0)
-        compile_beside_imports(wanted, aside)
+        compile_beside_imports(wanted, aside, keeps_tiles=store is not None)
         compiled = time.perf_counter()
         map_ = labelled_map(wanted, store=store, progress=tell)
         computed = time.perf_counter()
         drawn = map_.loaded()
         writing = aside.submit(write_netcdf, map_, out)
         result: dict[str, Any] = {
-            "schema": 1, "command": "map", "version": __version__, "case": case, "cells": wanted.cells, "periods": periods,
+            "schema": 1, "command": "map", "command_line": shlex.join(["jaxbacklash", *sys.argv[1:]]), "version": __version__,
+            "case": case, "cells": wanted.cells, "periods": periods,
             "skip": skip, "axes": {name: [values[0], values[-1], len(values)] for name, values in wanted.axes},
             "solver": map_.attrs["solver"], **counts(drawn), "out": str(out),
             "wall_s": {
@@ -75,7 +82,7 @@ def run(
         tell("drawing", 1.0)
         picture(drawn, result, out)
         writing.result()
-        if left := remove(store):
+        if store is not None and (left := remove(store)):
             warnings.warn(f"{store} stays: it holds {left[0]!r}, which is no part of a store of tiles", stacklevel=2)
     if as_json:
         sys.stdout.write(json_text(result))
@@ -84,15 +91,31 @@ def run(
         print(f"written: {out}, {out.with_suffix('.html').name}, {out.with_suffix('.png').name}")
 
 
-def compile_beside_imports(wanted: Request, aside: ThreadPoolExecutor) -> None:
+def fits_in_memory(wanted: Request) -> None:
+    """Refuse a map that a file written from memory does not take.
+
+    Raises
+    ------
+    BadInput
+        Its samples have more than `LARGEST` bytes.
+    """
+    if 8 * wanted.cells * wanted.plan.samples > LARGEST:
+        raise BadInput(
+            f"map: {wanted.cells} cells with {wanted.plan.samples} samples each take more than the 2 GB of a netCDF-3 variable: "
+            'take fewer, or pip install "jaxbacklash[sweep]", which keeps the map on disk'
+        )
+
+
+def compile_beside_imports(wanted: Request, aside: ThreadPoolExecutor, keeps_tiles: bool) -> None:
     """Compile the map's program while the libraries that keep and draw it are loaded: the compiler leaves Python free.
 
     Tracing does not, so it comes first.
     """
     compile_exact = trace_exact(int(np.prod(wanted.tile)), wanted.plan)
     compiling = aside.submit(compile_exact)
-    need_zarr()
-    need_h5netcdf()
+    if keeps_tiles:
+        importlib.import_module("zarr")
+        importlib.import_module("h5netcdf")
     from ..report import map_report as map_report
     compiling.result()
 

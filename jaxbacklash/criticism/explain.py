@@ -15,9 +15,9 @@ import jax.numpy as jnp
 import jax.scipy.linalg as jsl
 
 from ..compiled import kept_jit
+from ..fitting.block_tridiagonal import Factor, bordered, solve_lower
 from ..fitting.shooting import Blocks
-from .chain import Factor, forward
-from .smoother import Point, Smoother, bordered, eliminate, prior, torque_places
+from .smoother import Point, Smoother, prior, solve, solve_parameters, torque_places
 
 Array = Any
 
@@ -33,8 +33,8 @@ class Explained(eqx.Module):
 
 
 class Prepared(eqx.Module):
-    """The chain under each of G priors of the remainder (first differences of a torque, with ``log_precisions`` (G,)), for many
-    calls of `explain`: the prior itself, and the chain's ``factor`` and ``halfway``, as in `Eliminated`, with G in front."""
+    """The smoother's system under each of G priors of the remainder (first differences of a torque, of ``log_precisions`` (G,)),
+    for many calls of `explain`: the prior itself, and ``factor`` and ``halfway`` as in `Eliminated`, with G in front."""
 
     linear: Blocks
     diagonal: Array
@@ -48,12 +48,12 @@ class Prepared(eqx.Module):
 
 @kept_jit
 def prepare(s: Smoother, at: Point, linear: Blocks, log_precisions: Array) -> Prepared:
-    """What every table needs, from the chain at a point as `finish` gives it."""
+    """What every table needs, from the normal equations ``linear`` at a point as `finish` gives them."""
     diagonal, below, slope, rough = (part[1] for part in prior(s, at))
 
     def under(log_precision: Array) -> tuple[Factor, Array]:
         precision = jnp.exp(log_precision)
-        done = eliminate(linear, precision * diagonal, precision * below, precision * slope, s.problem.windows.used)
+        done = solve(linear, precision * diagonal, precision * below, precision * slope, s.problem.windows.used).eliminated
         return done.factor, done.halfway
 
     return Prepared(linear, diagonal, below, slope, rough, log_precisions, *jax.lax.map(under, log_precisions))
@@ -66,7 +66,7 @@ def explain(s: Smoother, at: Point, prepared: Prepared, phi: Array, penalty: Arr
     Parameters
     ----------
     s, at : the smoother and the point of its linearisation
-    prepared : the chain there, from `prepare`
+    prepared : the smoother's system there, from `prepare`
     phi : (W, K, R) the table's basis at the torque's values
     penalty : (R, R) precision of the table in the smoother's unit, positive definite
     """
@@ -85,10 +85,11 @@ def explain(s: Smoother, at: Point, prepared: Prepared, phi: Array, penalty: Arr
     def one(under: Any) -> tuple[Array, Array, Array]:
         log_precision, factor, known = under
         precision = jnp.exp(log_precision)
-        new = forward(factor, -precision * pulled)
+        new = solve_lower(factor, -precision * pulled)
         halfway = jnp.concatenate([known[:, :, :-1], new, known[:, :, -1:]], axis=2)
         corner = jsl.block_diag(linear.corner, precision * gram + penalty)
-        done = bordered(factor, halfway, corner, jnp.concatenate([linear.slope_theta, -precision * against]))
+        slope_theta = jnp.concatenate([linear.slope_theta, -precision * against])
+        done = solve_parameters(bordered(factor, halfway, corner, slope_theta), corner)
         least = linear.cost + 0.5 * precision * prepared.rough - done.promise
         told = 0.5 * rows * log_precision - 0.5 * done.log_determinant - least
         return told, done.theta, done.schur

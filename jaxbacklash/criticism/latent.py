@@ -52,8 +52,8 @@ EVIDENT = 6.0
 
 @dataclass(frozen=True)
 class Inside:
-    """The smoother where it ended: for further questions at the same point. ``linear`` is the chain there, ``precision`` that of
-    the torque's differences of order ``order``."""
+    """The smoother where it ended: for further questions at the same point. ``linear`` the normal equations there, ``precision``
+    that of the torque's differences of order ``order``."""
 
     smoother: Smoother
     point: Point

@@ -2,8 +2,8 @@ r"""The Gaussian smoother behind `latent`: windows, starts, the input's spline a
 
 Unknowns of each window: its start, its coefficients of the input's spline, and K values of a torque that is piecewise linear
 in time and runs on into the next window; and the model's q free parameters. Rows as in a fit (measured motion, measured
-input, ends tied to starts), plus a prior that wants the torque's first or second differences small. The matrix is a chain
-(`chain`) with a border, so the torque is estimated with all of the record at once, and its uncertainty counts what is not
+input, ends tied to starts), plus a prior that wants the torque's first or second differences small. The matrix is block
+tridiagonal with a border, so the torque is estimated with all of the record at once, and its uncertainty counts what is not
 known of starts, input and parameters.
 """
 
@@ -18,6 +18,7 @@ import jax.scipy.linalg as jsl
 import numpy as np
 
 from ..compiled import kept_jit, lasting_jit
+from ..fitting.block_tridiagonal import Eliminated, eliminate, inverse_diagonal, solve_upper
 from ..fitting.problem import Problem, Unknowns
 from ..fitting.shooting import (
     Blocks,
@@ -32,7 +33,6 @@ from ..fitting.shooting import (
     trajectory,
 )
 from ..signals import DEGREE
-from .chain import Factor, backward, factorise, forward, variances
 
 Array = Any
 RIDGE = 1e-10
@@ -102,7 +102,7 @@ def _locals(s: Smoother, at: Point) -> tuple[Array, Array]:
 
 
 def linearise(s: Smoother, at: Point) -> Blocks:
-    """Residuals and the chain at a point, with no prior on the torque."""
+    """Residuals and normal equations at a point, with no prior on the torque."""
     problem, u, w = s.problem, at.unknowns, s.problem.windows
     n, m, nodes, q = u.starts.shape[0], w.intervals, s.nodes, u.theta.shape[0]
     spline, torque = _locals(s, at)
@@ -150,41 +150,32 @@ def linearise(s: Smoother, at: Point) -> Blocks:
     return Blocks(diagonal, blocks.below, blocks.border, corner, slope, blocks.slope_theta + away, cost)
 
 
-class Eliminated(eqx.Module):
-    """A system with the chain eliminated: the chain's ``factor``; ``halfway`` (W, B, q + 1), its lower factor's answer to the
-    border and to the chain's own slope; the Cholesky factor ``schur`` (q, q) of the information about the parameters; their step
-    ``theta`` (q,); ``promise`` >= 0, what the step takes off the cost; ``log_determinant`` of it all."""
+class Solved(eqx.Module):
+    """A system solved for its parameters: the windows ``eliminated``; the Cholesky factor ``schur`` (q, q) of the information
+    about the parameters; their step ``theta`` (q,); ``promise`` >= 0, what the step takes off the cost; ``log_determinant`` of it
+    all."""
 
-    factor: Factor
-    halfway: Array
+    eliminated: Eliminated
     schur: Array
     theta: Array
     promise: Array
     log_determinant: Array
 
-    @property
-    def local(self) -> Array:
-        """The step of the windows' own unknowns, (W, B)."""
-        both = self.halfway @ jnp.append(self.theta, 1.0)
-        return -backward(self.factor, both[:, :, None])[:, :, 0]
+
+def solve(linear: Blocks, diagonal: Array, below: Array, slope: Array, used: Array) -> Solved:
+    """Solve the system of the first ``used`` windows, a prior's ``diagonal``, ``below`` and ``slope`` added."""
+    own = linear.diagonal + diagonal, linear.below + below, linear.border
+    return solve_parameters(eliminate(*own, linear.corner, linear.slope + slope, linear.slope_theta, used), linear.corner)
 
 
-def eliminate(linear: Blocks, diagonal: Array, below: Array, slope: Array, used: Array) -> Eliminated:
-    """Eliminate the chain of the first ``used`` windows, a prior's ``diagonal``, ``below`` and ``slope`` added."""
-    factor = factorise(linear.diagonal + diagonal, linear.below + below, used)
-    halfway = forward(factor, jnp.concatenate([linear.border, (linear.slope + slope)[:, :, None]], axis=2))
-    return bordered(factor, halfway, linear.corner, linear.slope_theta)
-
-
-def bordered(factor: Factor, halfway: Array, corner: Array, slope_theta: Array) -> Eliminated:
-    """The parameters' part of a system, from the chain's answers to its border and slope."""
-    products = jnp.einsum("wbi,wbj->ij", halfway, halfway)
-    schur = _factored(corner - products[:-1, :-1], jnp.diagonal(corner))
-    right = slope_theta - products[:-1, -1]
-    theta = -jsl.cho_solve((schur, True), right)
-    promise = 0.5 * (products[-1, -1] - right @ theta)
-    log_determinant = factor.log_determinant + 2.0 * jnp.sum(jnp.log(jnp.diagonal(schur)))
-    return Eliminated(factor, halfway, schur, theta, promise, log_determinant)
+def solve_parameters(eliminated: Eliminated, corner: Array) -> Solved:
+    """The parameters' step of a system whose windows are eliminated; ``corner`` (q, q) their information alone."""
+    schur = _factored(eliminated.schur, jnp.diag(corner))
+    theta = jsl.cho_solve((schur, True), eliminated.score)
+    # The factor may hold more than the Schur complement, where that is lost in rounding.
+    promise = eliminated.gain + 0.5 * theta @ eliminated.score
+    log_determinant = eliminated.factor.log_determinant + 2.0 * jnp.sum(jnp.log(jnp.diagonal(schur)))
+    return Solved(eliminated, schur, theta, promise, log_determinant)
 
 
 def _factored(information: Array, alone: Array) -> Array:
@@ -239,9 +230,9 @@ def improve(s: Smoother, at: Point, orders: Array, log_precisions: Array) -> Imp
     diagonal, below, slope, rough = prior(s, at)
     rows = jnp.sum(s.present) * s.nodes
 
-    def under(order: Array, precision: Array) -> Eliminated:
+    def under(order: Array, precision: Array) -> Solved:
         scaled = precision * diagonal[order], precision * below[order], precision * slope[order]
-        return eliminate(linear, *scaled, s.problem.windows.used)
+        return solve(linear, *scaled, s.problem.windows.used)
 
     def evidence(prior: Any) -> Array:
         order, log_precision = prior
@@ -255,7 +246,7 @@ def improve(s: Smoother, at: Point, orders: Array, log_precisions: Array) -> Imp
     without = evidence((jnp.asarray(0), jnp.log(NOTHING)))
     index = jnp.argmax(told)
     done = under(orders[index], jnp.exp(log_precisions[index]))
-    local = done.local
+    local = done.eliminated.local(done.theta)
     u = at.unknowns
     n, m, nodes = u.starts.shape[0], s.problem.windows.intervals, s.nodes
     in_spline, in_torque = _places(n, m, nodes)
@@ -275,17 +266,19 @@ def misfit(problem: Problem, unknowns: Unknowns) -> Array:
 
 @lasting_jit
 def finish(s: Smoother, at: Point, order: Array, log_precision: Array) -> tuple[Array, Array, Trajectory, Blocks]:
-    """Standard errors of the torque (W, K) in its unit and of the parameters (q,) in theirs, the trajectories, the chain."""
+    """Standard errors of the torque (W, K) in its unit and of the parameters (q,) in theirs, the trajectories, the normal
+    equations."""
     linear = linearise(s, at)
     diagonal, below, slope, _ = prior(s, at)
     precision = jnp.exp(log_precision)
     scaled = precision * diagonal[order], precision * below[order], precision * slope[order]
-    done = eliminate(linear, *scaled, s.problem.windows.used)
+    done = solve(linear, *scaled, s.problem.windows.used)
     n, m, nodes = at.unknowns.starts.shape[0], s.problem.windows.intervals, s.nodes
     place = _places(n, m, nodes)[1][:nodes]
-    reach = backward(done.factor, done.halfway[:, :, :-1])
+    factor = done.eliminated.factor
+    reach = solve_upper(factor, done.eliminated.halfway[:, :, :-1])
     through = jnp.einsum("wbi,ij->wbj", reach[:, place], jnp.linalg.inv(done.schur).T)
-    spread = jnp.sqrt(variances(done.factor)[:, place] + jnp.sum(through**2, axis=2))
+    spread = jnp.sqrt(inverse_diagonal(factor)[:, place] + jnp.sum(through**2, axis=2))
     loose = jnp.sqrt(jnp.diagonal(jsl.cho_solve((done.schur, True), jnp.eye(done.schur.shape[0]))))
     spline, torque = _locals(s, at)
     w = s.problem.windows

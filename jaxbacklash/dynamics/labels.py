@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
-from itertools import pairwise, product
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..errors import BadInput
 from ..frames import needed
-from ..whole_file import whole_file
 from .periodicity import CHAOTIC, UNRESOLVED
 from .request import KEPT, VARIABLES, Request, package_version
 from .tiles import MemoryTiles, TileStore, shape_of
 
 ROOM = 2**20
-"""Numbers that are read from a store at once: asking costs as much as reading a few chunks."""
+"""Numbers of a map that are held in memory at once: asking a store costs as much as reading a few chunks."""
 ABOUT = {
     "lyapunov": ("largest Lyapunov exponent", "1/{time}"),
     "lyapunov_stderr": ("standard error of the exponent, from batch means", "1/{time}"),
@@ -31,11 +26,6 @@ ABOUT = {
 def need_xarray() -> Any:
     """The xarray library, or one sentence about how to get it."""
     return needed("xarray", "a map", "sweep")
-
-
-def need_h5netcdf() -> Any:
-    """The library that writes netCDF, or one sentence about how to get it."""
-    return needed("h5netcdf", "writing netCDF", "sweep")
 
 
 def need_dask_array() -> Any:
@@ -120,74 +110,3 @@ def labelled(wanted: Request, kept: MemoryTiles | TileStore) -> Labelled:
     if length == "half play":
         attributes["zeta_is"] = "c / (2 m omega_0); the paper's figures quote 2 zeta"
     return Labelled(variables, coordinates, attributes)
-
-
-def write_netcdf(map_: Any, path: str | os.PathLike[str]) -> None:
-    """Write a map whole or not at all, and the same map always as the same bytes.
-
-    A map from a store goes over in order, some chunks at a time, so that no more than `ROOM` numbers are in memory.
-    ``map_`` is a Dataset or a `Labelled`.
-
-    Raises
-    ------
-    BadInput
-        h5netcdf is missing or the file cannot be written.
-
-    Examples
-    --------
-    >>> from pathlib import Path
-    >>> from tempfile import mkdtemp
-    >>> found = jb.dynamics.paper_map(1, {"inverse_alpha": [1.5, 2.0, 3.0], "zeta": [0.02, 0.03]}, periods=60, skip=20)
-    >>> file = Path(mkdtemp()) / "case1.nc"
-    >>> jb.dynamics.write_netcdf(found, file)
-    >>> file.stat().st_size > 1000
-    True
-    """
-    h5netcdf = need_h5netcdf()
-    target = Path(path)
-    try:
-        with whole_file(target) as part, h5netcdf.File(part, "w") as file:
-            file.dimensions = {str(name): int(size) for name, size in map_.sizes.items()}
-            for key, value in map_.attrs.items():
-                file.attrs[key] = value
-            coordinates = map_.coordinates if isinstance(map_, Labelled) else {}  # a Dataset's are among its variables
-            for name, variable in {**coordinates, **map_.variables}.items():
-                _write_variable(file, str(name), variable)
-    except OSError as error:
-        raise BadInput(f"--out {target}: cannot be written ({error.strerror or error})") from None
-
-
-def _write_variable(file: Any, name: str, variable: Any) -> None:
-    data = variable.data
-    chunks = _chunks(data)
-    shape = tuple(parts[0] for parts in chunks) if chunks else None
-    written = file.create_variable(name, tuple(variable.dims), dtype=data.dtype, chunks=shape)
-    for key, value in variable.attrs.items():
-        written.attrs[key] = value
-    if not chunks:
-        written[...] = np.asarray(data)
-        return
-    edges = [np.concatenate([[0], np.cumsum(parts)]) for parts in chunks]
-    # Every so many edges, and the last one.
-    stops = [[*e[:-1:step], e[-1]] for e, step in zip(edges, _together(chunks))]
-    for box in product(*(pairwise(e) for e in stops)):
-        where = tuple(slice(int(begin), int(end)) for begin, end in box)
-        written[where] = np.asarray(data[where])
-
-
-def _chunks(data: Any) -> tuple[tuple[int, ...], ...] | None:
-    """The lengths of an array's chunks along each dimension, as dask tells them; zarr tells the length of a whole one."""
-    chunks = getattr(data, "chunks", None)
-    if not chunks or not isinstance(chunks[0], int):
-        return chunks
-    return tuple(tuple(min(step, size - i) for i in range(0, size, step)) for step, size in zip(chunks, data.shape))
-
-
-def _together(chunks: tuple[tuple[int, ...], ...]) -> list[int]:
-    """How many chunks along each dimension are read at once: whole rows of chunks, as far as `ROOM` goes."""
-    room = max(1, ROOM // int(np.prod([parts[0] for parts in chunks])))
-    steps: list[int] = []
-    for parts in reversed(chunks):
-        steps.insert(0, min(len(parts), room))
-        room = max(1, room // steps[0])
-    return steps

@@ -1,4 +1,4 @@
-"""From records to parameters: windows, shooting, the arrow's linear algebra, intervals."""
+"""From records to parameters: windows, shooting, the block tridiagonal solver, intervals."""
 
 from .compare import Comparison as Comparison
 from .compare import compare as compare

@@ -10,7 +10,7 @@ import jax
 import jax.numpy as jnp
 import optimistix as optx
 
-from .arrow import solve
+from .damped_step import solve
 from .problem import Problem, Unknowns
 from .shooting import Blocks, Prediction, linearise, shoot
 
@@ -43,7 +43,7 @@ class ArrowState(eqx.Module):
 
 
 class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
-    """Levenberg-Marquardt whose linear algebra knows the arrow (`jaxbacklash.fitting.arrow`).
+    """Levenberg-Marquardt whose linear algebra knows the arrow (`jaxbacklash.fitting.damped_step`).
 
     ``fn`` is not differentiated as a whole: ``args`` is the `Problem`, whose blocks are built by
     `jaxbacklash.fitting.shooting.linearise`. The first four are those of `jaxbacklash.fitting.levenberg.Levenberg`.
@@ -114,7 +114,7 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
     ) -> Any:
         undamped = solve(state.blocks, jnp.asarray(0.0), args.windows.used, _room(args, y.theta))
         stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps}
-        told = {"schur": undamped.schur, "pull": undamped.pull, "promise": undamped.promise}
+        told = {"schur": undamped.schur, "pull": undamped.score, "promise": undamped.promise}
         return y, aux, stats | told | {"log_determinant": undamped.log_determinant}
 
 

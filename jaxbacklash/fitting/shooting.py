@@ -9,7 +9,7 @@ coefficients c of the input's spline (base motion, or a smooth force). Misfit, a
 
 Minimising over s and c is what whitening the residual with both noises amounts to, to first order; it also holds beyond it.
 Window w meets only its own unknowns, the first few of window w + 1, and the parameters: the normal equations form a block
-tridiagonal matrix with a border (an arrow), and everything costs in proportion to the length of the record.
+tridiagonal matrix with a border, and everything costs in proportion to the length of the record.
 """
 
 from __future__ import annotations
@@ -301,7 +301,7 @@ def _meet(shared: tuple[Problem, Array], lead: tuple[Window, Shot]) -> Met:
 def assemble(
     gram: Array, slope: Array, end_rows: Array, tie: Array, tie_weight: Array, seen: Array, n: int, m: int, q: int, cost: Array
 ) -> Blocks:
-    """Blocks of the arrow from each window's own Gram matrix.
+    """Normal equations by blocks, from each window's own Gram matrix.
 
     ``gram`` (W, U, U) and ``slope`` (W, U) of the unknowns each window sees: its own n + m, those it shares with the next
     window (the first ones after that window's start), and q parameters; ``end_rows`` (W, U, n) weighted tangents of its end;

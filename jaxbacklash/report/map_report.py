@@ -54,7 +54,7 @@ def map_report(map_: Any, result: dict[str, Any], sentence: str, path: Path) -> 
         )
     )
     told = {
-        "command": "map", "command_line": "", "version": result["version"], "record": {"path": result["out"]},
+        "command": "map", "command_line": result["command_line"], "version": result["version"], "record": {"path": result["out"]},
         "verdict_text": sentence,
     }  # fmt: skip
     write_report(path, told, panels)

@@ -1,16 +1,25 @@
-"""The arrow's linear algebra against dense algebra, and damping that leaves tied windows free to move together."""
+"""The block tridiagonal solver and the step of a fit against dense algebra, and damping that leaves tied windows free to move
+together."""
 
 import jax.numpy as jnp
 import numpy as np
 import pytest
 from scipy import optimize
 
-from jaxbacklash.fitting.arrow import solve
+from jaxbacklash.fitting.block_tridiagonal import (
+    bordered,
+    eliminate,
+    factorise,
+    inverse_diagonal,
+    solve_lower,
+    solve_upper,
+)
+from jaxbacklash.fitting.damped_step import solve
 from jaxbacklash.fitting.shooting import Blocks
 
 
-def chain(rng, windows=5, size=3, q=2):
-    """A positive definite arrow, as blocks and as one matrix, with its gradient."""
+def system(rng, windows=5, size=3, q=2):
+    """A positive definite system, as blocks and as one matrix, with its gradient."""
     n = windows * size
     jacobian = np.zeros((40 * windows, n + q))
     for w in range(windows):
@@ -31,9 +40,57 @@ def chain(rng, windows=5, size=3, q=2):
     return blocks, matrix, slope
 
 
+def padded(part, rng, more=2):
+    """An array with windows beyond those that are used: what they hold is nobody's."""
+    return np.concatenate([part, rng.standard_normal((more, *part.shape[1:]))])
+
+
+def test_factor_is_that_of_the_dense_matrix():
+    rng = np.random.default_rng(0)
+    blocks, matrix, _ = system(rng, windows=4)
+    windows, size = blocks.slope.shape
+    dense = matrix[: windows * size, : windows * size]
+    right = rng.standard_normal((windows, size, 2))
+    factor = factorise(padded(blocks.diagonal, rng), padded(blocks.below, rng), windows)
+    half = solve_lower(factor, padded(right, rng))
+    solution = np.linalg.solve(dense, right.reshape(-1, 2))
+    assert float(factor.log_determinant) == pytest.approx(np.linalg.slogdet(dense)[1])
+    np.testing.assert_allclose(solve_upper(factor, half)[:windows].reshape(-1, 2), solution, rtol=1e-9)
+    np.testing.assert_allclose(np.einsum("wbi,wbj->ij", half, half), right.reshape(-1, 2).T @ solution, rtol=1e-9)
+    np.testing.assert_allclose(np.ravel(inverse_diagonal(factor)[:windows]), np.diag(np.linalg.inv(dense)), rtol=1e-9)
+
+
+@pytest.mark.parametrize("q", [0, 1, 3])
+def test_elimination_leaves_the_schur_complement_and_the_score(q):
+    rng = np.random.default_rng(q)
+    blocks, matrix, slope = system(rng, q=q)
+    windows, size = blocks.slope.shape
+    n = windows * size
+    along = [padded(np.asarray(part), rng) for part in (blocks.diagonal, blocks.below, blocks.border, blocks.slope)]
+    done = eliminate(*along[:3], blocks.corner, along[3], blocks.slope_theta, windows)
+    inner = np.linalg.inv(matrix[:n, :n])
+    schur = matrix[n:, n:] - matrix[n:, :n] @ inner @ matrix[:n, n:]
+    np.testing.assert_allclose(done.schur, schur, rtol=1e-9)
+    np.testing.assert_allclose(done.score, -slope[n:] + matrix[n:, :n] @ inner @ slope[:n], rtol=1e-9, atol=1e-12)
+    step = rng.standard_normal(q)
+    local = -inner @ (slope[:n] + matrix[:n, n:] @ step)
+    np.testing.assert_allclose(np.ravel(done.local(step)[:windows]), local, rtol=1e-8)
+    assert np.all(np.asarray(done.local(step))[windows:] == 0.0)
+    whole = np.concatenate([local, step])
+    promise = -(slope @ whole + 0.5 * whole @ matrix @ whole)
+    assert float(done.promise(step, done.schur)) == pytest.approx(promise, rel=1e-9)
+    again = bordered(done.factor, done.halfway, blocks.corner, blocks.slope_theta)
+    np.testing.assert_array_equal(again.schur, done.schur)
+
+
+def test_a_matrix_that_is_not_positive_definite_says_so():
+    blocks, _, _ = system(np.random.default_rng(1))
+    assert np.isnan(factorise(-blocks.diagonal, blocks.below, 5).log_determinant)
+
+
 @pytest.mark.parametrize("damping", [0.0, 0.3])
 def test_it_solves_what_dense_algebra_solves(damping):
-    blocks, matrix, slope = chain(np.random.default_rng(4))
+    blocks, matrix, slope = system(np.random.default_rng(4))
     found = solve(blocks, jnp.asarray(damping))
     size = found.local.size
     exact = np.linalg.solve(matrix + damping * np.diag(np.diag(matrix)), -slope)
@@ -48,7 +105,7 @@ def test_it_solves_what_dense_algebra_solves(damping):
 def test_what_a_bound_holds_takes_all_else_with_it(seed):
     """Against scipy's bounded least squares: of the parameters' steps, half the room that they ask for."""
     rng = np.random.default_rng(seed)
-    blocks, matrix, slope = chain(rng)
+    blocks, matrix, slope = system(rng)
     size, q = blocks.slope.size, blocks.corner.shape[0]
     asked = np.abs(np.linalg.solve(matrix, -slope)[size:])
     room = np.where(np.arange(q) == seed % q, 0.0, np.where(rng.random(q) < 0.5, 0.5, 2.0) * asked)
@@ -75,7 +132,7 @@ def test_ties_do_not_hinder_windows_that_move_together(tie):
 @pytest.mark.parametrize("damping", [0.0, 1e-3, 1e3])
 def test_what_moves_nothing_is_not_sent_anywhere_by_the_rounding_of_its_slope(damping):
     """The speed from which dry friction brings a link to rest at once: no damping that is a share of its curvature holds it."""
-    blocks, matrix, slope = chain(np.random.default_rng(5))
+    blocks, matrix, slope = system(np.random.default_rng(5))
     size, q = blocks.slope.shape[1], blocks.corner.shape[0]
     dead = size * 2 + 1  # the second unknown of the third window
     matrix, slope = matrix.copy(), slope.copy()
