@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from jaxbacklash.criticism.workbench import Workbench
-from jaxbacklash.fitting.arrow_levenberg import ArrowLevenbergMarquardt
+from jaxbacklash.fitting.block_levenberg import BlockLevenbergMarquardt
 from jaxbacklash.fitting.levenberg import Levenberg, minimise
 from jaxbacklash.fitting.problem import Unknowns
 from jaxbacklash.fitting.search import TIES, tie_windows
 from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
-from jaxbacklash.fitting.shooting import residuals, shoot
+from jaxbacklash.fitting.shooting import linearise, residual_rows, residuals, shoot
 from jaxbacklash.parameters import with_values
 
 from .hidden import hidden
@@ -39,13 +39,31 @@ def test_a_shot_costs_half_the_sum_of_its_squares():
     assert float(shot.cost) == pytest.approx(sum(0.5 * np.sum(np.asarray(r) ** 2) for r in found), rel=1e-9)
 
 
+@pytest.mark.parametrize("name", [None, "dahl"])
+def test_blocks_are_those_of_the_rows_that_optimistix_is_handed(name):
+    """J^T r and half of r^T r, by differentiation of the rows as a whole."""
+    bench, effects = joint(name, 2, 2.0)
+    problem, _ = bench.problem(effects, bench.base)
+    guess = first_guess(problem)
+    rng = np.random.default_rng(3)
+    shift = rng.standard_normal(guess.starts.shape) * (1e-3 if name is None else 1e-2)
+    moved = Unknowns(0.01 * rng.standard_normal(guess.theta.shape), guess.starts + shift, guess.coefficients * (1.0 + 1e-4))
+    half = lambda u: sum(0.5 * jax.numpy.sum(row**2) for row in residual_rows(u, problem)[0])  # noqa: E731
+    cost, slope = jax.jit(lambda u: (half(u), jax.jacfwd(lambda th: half(eqx.tree_at(lambda v: v.theta, u, th)))(u.theta)))(moved)
+    blocks = jax.jit(lambda u: linearise(problem, u, shoot(problem, u)))(moved)
+    assert float(blocks.cost) == pytest.approx(float(cost), rel=1e-9)
+    active = int(problem.active)
+    np.testing.assert_allclose(blocks.slope_theta[:active], slope[:active], rtol=1e-6)
+
+
 def test_a_step_that_is_turned_down_changes_nothing_but_the_damping():
     bench, _ = joint(None, 2, 4.0)
     problem, _ = bench.problem({}, bench.base)
-    solver = ArrowLevenbergMarquardt()
+    solver = BlockLevenbergMarquardt()
     guess = first_guess(problem)
-    before = solver.init(None, guess, problem, {}, None, None, None)
-    step = eqx.filter_jit(lambda y, state: solver.step(None, y, problem, {}, state, None)[:2])
+    shapes = eqx.filter_eval_shape(residual_rows, guess, problem)
+    before = solver.init(residual_rows, guess, problem, {}, *shapes, None)
+    step = eqx.filter_jit(lambda y, state: solver.step(residual_rows, y, problem, {}, state, None)[:2])
     y, at = step(guess, before)
     far = eqx.tree_at(lambda s: s.trial.starts, at, at.trial.starts + 1.0)
     same, after = step(y, far)

@@ -7,11 +7,11 @@ from typing import Any
 
 import equinox as eqx
 import jax
-import jax.numpy as jnp
 import numpy as np
 
 from ..compiled import kept_jit
 from .problem import Problem, Unknowns
+from .shooting import residual_rows
 
 Array = Any
 MOST = 1000
@@ -67,12 +67,11 @@ def _minimise(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int)
     # Asked for only while tracing: a program that was kept need not wait for optimistix, diffrax and lineax to load.
     import optimistix as optx
 
-    from .arrow_levenberg import ArrowLevenbergMarquardt
+    from .block_levenberg import BlockLevenbergMarquardt
 
-    def residual(y: Unknowns, args: Problem) -> Array:
-        # optimistix asks only for its structure: the solver builds residuals and blocks together.
-        return jnp.zeros(())
-
-    solver = ArrowLevenbergMarquardt(rtol=how.rtol, atol=how.atol, damping=how.damping, limit=how.limit)
-    found: optx.Solution = optx.least_squares(residual, solver, start, args=problem, max_steps=max_steps, throw=False)
+    solver = BlockLevenbergMarquardt(rtol=how.rtol, atol=how.atol, damping=how.damping, limit=how.limit)
+    rows: Any = residual_rows  # optimistix's types take rows or rows with something beside, not both
+    found: optx.Solution = optx.least_squares(
+        rows, solver, start, args=problem, has_aux=True, max_steps=max_steps, throw=False
+    )
     return found.value, found.stats

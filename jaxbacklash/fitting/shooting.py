@@ -209,10 +209,24 @@ class Shot(eqx.Module):
 def shoot(problem: Problem, unknowns: Unknowns) -> Shot:
     """Run through all windows: a sixth of the work of a linearisation, and all that is needed to turn a step down."""
     shot = by_chunks(_shoot, (_bare(problem), unknowns.theta), _windows(problem, unknowns), problem.windows.used)
-    w = problem.windows
-    change = unknowns.coefficients - w.coefficients
-    beside = 0.5 * _whisper(w) * jnp.sum(change**2) + _first_remembered(problem, unknowns.starts.T)[0]
+    beside = sum(0.5 * jnp.sum(row**2) for row in _prior_rows(problem, unknowns))
     return eqx.tree_at(lambda s: s.cost, shot, jnp.sum(shot.cost) + beside)
+
+
+def residual_rows(unknowns: Unknowns, problem: Problem) -> tuple[tuple[Array, ...], Shot]:
+    """Everything whose sum of squares a fit makes small, in units of the noise, as arrays of any shape; and what was run through.
+
+    Half of that sum is the ``cost`` of the `Shot`. `linearise` builds J^T J and J^T r of these rows.
+    """
+    shot = shoot(problem, unknowns)
+    return (shot.motion, shot.input, shot.tie, *_prior_rows(problem, unknowns)), shot
+
+
+def _prior_rows(problem: Problem, unknowns: Unknowns) -> tuple[Array, Array, Array]:
+    """The rows of a sum of squares that hold what no sample does: (W, m) of the spline, and twice (W, n) of the starts."""
+    w = problem.windows
+    spline = jnp.sqrt(_whisper(w)) * (unknowns.coefficients - w.coefficients)
+    return spline, *_first_rows(problem, unknowns.starts.T)
 
 
 def _shoot(shared: tuple[Problem, Array], own: Window) -> Shot:
@@ -368,18 +382,28 @@ def _ridge(problem: Problem, unknowns: Unknowns, blocks: Blocks, n: int) -> Bloc
 
 
 def _first_remembered(problem: Problem, starts: Array) -> tuple[Array, Array, Array]:
-    """What holds the memory with which a window begins that goes on from none: its cost, slope (W, n) and curvature (W, n).
+    """What holds the memory with which a window begins that goes on from none: its cost, slope (W, n) and curvature (W, n)."""
+    reach = jnp.asarray(problem.system.reach)
+    within, beyond = _first_rows(problem, starts)
+    curvature = jnp.where(beyond == 0.0, 1.0, 1.0 + KEPT**2) * _alone(problem)[:, None]
+    cost = 0.5 * (jnp.sum(within**2) + jnp.sum(beyond**2))
+    return cost, (within + KEPT * beyond) / reach, curvature / reach**2
+
+
+def _first_rows(problem: Problem, starts: Array) -> tuple[Array, Array]:
+    """The rows, twice (W, n), that hold the memory with which a window begins that goes on from none.
 
     Nothing else does, and such a window, begun far beyond all reach, would hold up the search of all. Within its reach any is
     nearly as likely as another, and none lies beyond.
     """
-    w, reach = problem.windows, jnp.asarray(problem.system.reach)
-    alone = (1.0 - jnp.concatenate([jnp.zeros(1), w.tie[:-1]])) * (jnp.arange(w.count) < w.used)
-    share = starts / reach
-    beyond = share - jnp.clip(share, -1.0, 1.0)
-    cost = 0.5 * jnp.sum(alone[:, None] * (share**2 + (KEPT * beyond) ** 2))
-    curvature = jnp.where(beyond == 0.0, 1.0, 1.0 + KEPT**2)
-    return cost, alone[:, None] * (share + KEPT**2 * beyond) / reach, alone[:, None] * curvature / reach**2
+    alone, share = _alone(problem)[:, None], starts / jnp.asarray(problem.system.reach)
+    return alone * share, alone * KEPT * (share - jnp.clip(share, -1.0, 1.0))
+
+
+def _alone(problem: Problem) -> Array:
+    """1 for windows that go on from none, else 0, (W,)."""
+    w = problem.windows
+    return (1.0 - jnp.concatenate([jnp.zeros(1), w.tie[:-1]])) * (jnp.arange(w.count) < w.used)
 
 
 def _whisper(w: Windows) -> Array:

@@ -1,5 +1,9 @@
-"""Levenberg-Marquardt for the multiple-shooting arrow, as an optimistix least-squares solver; `jaxbacklash.fitting.levenberg`
-calls it."""
+"""Levenberg-Marquardt for normal equations that come in blocks, as an optimistix least-squares solver.
+
+`jaxbacklash.fitting.levenberg` hands it to `optimistix.least_squares` with the residual of multiple shooting. What optimistix
+would do by automatic differentiation of that residual, `jaxbacklash.fitting.shooting.linearise` and
+`jaxbacklash.fitting.damped_step` do in time linear in the number of windows: CONTRIBUTING.md compares the two.
+"""
 
 from __future__ import annotations
 
@@ -12,10 +16,10 @@ import optimistix as optx
 
 from .damped_step import solve
 from .problem import Problem, Unknowns
-from .shooting import Blocks, Prediction, linearise, shoot
+from .shooting import Blocks, Prediction, Shot, linearise
 
 Array = Any
-_shoot, _linearise = eqx.filter_jit(shoot), eqx.filter_jit(linearise)  # traced once, though a search writes them down thrice
+_linearise = eqx.filter_jit(linearise)  # traced once, though a search writes it down twice
 
 PROMISED = 10.0
 """How many times what may be left to gain a step may promise where the last one kept less than that."""
@@ -27,7 +31,7 @@ STALLED, WORTH = 12, 20.0
 """A search ends that over so many steps has gained less than so many times what may be left to gain."""
 
 
-class ArrowState(eqx.Module):
+class SearchState(eqx.Module):
     """Where the search stands: ``blocks`` and ``predicted`` at the best point, the ``trial`` that is looked at next, ``damping``,
     ``gain`` the decrease of the cost that the step to it promises, ``fell`` the last decrease, ``steps`` tried so far, ``mark``
     the cost and the steps when it had last gained something worth while."""
@@ -42,11 +46,11 @@ class ArrowState(eqx.Module):
     mark: tuple[Array, Array]
 
 
-class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
-    """Levenberg-Marquardt whose linear algebra knows the arrow (`jaxbacklash.fitting.damped_step`).
+class BlockLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
+    """Levenberg-Marquardt that solves the normal equations by blocks, within bounds.
 
-    ``fn`` is not differentiated as a whole: ``args`` is the `Problem`, whose blocks are built by
-    `jaxbacklash.fitting.shooting.linearise`. The first four are those of `jaxbacklash.fitting.levenberg.Levenberg`.
+    ``fn`` is `jaxbacklash.fitting.shooting.residual_rows`, which returns the `Shot` beside the rows; `linearise` takes its
+    Jacobian. The first four are those of `jaxbacklash.fitting.levenberg.Levenberg`.
     """
 
     rtol: Array = 0.0
@@ -55,19 +59,18 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
     limit: Array = 60
     norm: Any = eqx.field(default=optx.max_norm, static=True)
 
-    def init(self, fn: Any, y: Unknowns, args: Problem, options: Any, f_struct: Any, aux_struct: Any, tags: Any) -> ArrowState:
-        shot = eqx.filter_eval_shape(_shoot, args, y)
-        shapes = eqx.filter_eval_shape(_linearise, args, y, shot), shot.predicted
+    def init(self, fn: Any, y: Unknowns, args: Problem, options: Any, f_struct: Any, aux_struct: Shot, tags: Any) -> SearchState:
+        shapes = eqx.filter_eval_shape(_linearise, args, y, aux_struct), aux_struct.predicted
         blocks, predicted = jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), shapes)
         far = jnp.asarray(jnp.inf)
         blocks = eqx.tree_at(lambda b: b.cost, blocks, far)
         none = jnp.asarray(0)
-        return ArrowState(blocks, predicted, y, jnp.asarray(self.damping), far, far, none, (far, none))
+        return SearchState(blocks, predicted, y, jnp.asarray(self.damping), far, far, none, (far, none))
 
     def step(
-        self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any
-    ) -> tuple[Unknowns, ArrowState, Any]:
-        shot = _shoot(args, state.trial)
+        self, fn: Any, y: Unknowns, args: Problem, options: Any, state: SearchState, tags: Any
+    ) -> tuple[Unknowns, SearchState, Any]:
+        _, shot = fn(state.trial, args)
         # The first call looks at the start, whatever it is worth.
         better = (shot.cost < state.blocks.cost) | (state.steps == 0)
         pick = lambda new, old: jnp.where(better, new, old)  # noqa: E731
@@ -92,13 +95,13 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         steps = state.steps + 1
         gained = state.mark[0] - blocks.cost > WORTH * self._least(args, blocks.cost)
         mark = jax.tree.map(lambda new, old: jnp.where(gained, new, old), (blocks.cost, steps), state.mark)
-        return y, ArrowState(blocks, predicted, trial, damping, solution.promise, fell, steps, mark), None
+        return y, SearchState(blocks, predicted, trial, damping, solution.promise, fell, steps, mark), shot
 
     def _least(self, args: Problem, cost: Array) -> Array:
         # Where the model misfits, the noise is no measure of what matters: the misfit is.
         return self.atol * jnp.maximum(1.0, 2.0 * cost / (_rows(args) + 1.0))
 
-    def terminate(self, fn: Any, y: Unknowns, args: Problem, options: Any, state: ArrowState, tags: Any) -> Any:
+    def terminate(self, fn: Any, y: Unknowns, args: Problem, options: Any, state: SearchState, tags: Any) -> Any:
         cost = state.blocks.cost
         least = self._least(args, cost)
         small = state.gain < least + self.rtol * jnp.maximum(cost - _rows(args), 0.0)
@@ -110,7 +113,7 @@ class ArrowLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         return done & (state.steps > 0), optx.RESULTS.successful
 
     def postprocess(
-        self, fn: Any, y: Unknowns, aux: Any, args: Problem, options: Any, state: ArrowState, tags: Any, result: Any
+        self, fn: Any, y: Unknowns, aux: Any, args: Problem, options: Any, state: SearchState, tags: Any, result: Any
     ) -> Any:
         undamped = solve(state.blocks, jnp.asarray(0.0), args.windows.used, _room(args, y.theta))
         stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps}
