@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from scipy import linalg
 
+from ..fitting.averaged import Averaged
 from ..mechanics import AbstractEffect, canonical_name
 from ..parameters import ravel, specs
 from ..records import Record
-from ..signals import Bump
 from ..system import System
 from .along_motion import motion, own_torques, torques
 
@@ -25,29 +25,23 @@ RUNAWAY = 1e100
 """A torque this large, whatever its unit, belongs to a motion that has run away."""
 
 
-class QuickLook:
+class QuickLook(Averaged):
     """The record seen through the bump, ready to be regressed on any law."""
 
     def __init__(self, record: Record) -> None:
+        super().__init__(record)
         self.motion = motion(record)
         self.blind = record.kind == "transmitted"  # the link is not seen, so there is nothing to regress on
         self._columns: dict[str, tuple[np.ndarray, np.ndarray]] = {}
-        self._bump = Bump(record.samples, record.dt)
-        self.spacing = self._bump.stride * record.dt  # of the rows [s]
-        self.passes = self._bump.passes
-        zero = np.zeros(record.samples)
-        raw = record.channels[record.observed_name]
-        carried = record.channels.get("x", zero) if record.observed_name == "z" else zero
-        self._acceleration = self._bump.against(raw + carried, 2)
 
     def missing(self, system: System, free: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
         """Missing torque under the bump (R,), and how it falls with each free parameter of the model (R, q)."""
         torque, columns = self.along(system, free)
-        left = float(system.inertia) * self._acceleration - self.average(self.motion.force + torque)
+        left = float(system.inertia) * self.acceleration - self.average(self.motion.force + torque)
         by = self.average(columns)
         for j, name in enumerate(free):
             if name == "inertia":
-                by[j] = -self._acceleration
+                by[j] = -self.acceleration
         return left, by.T
 
     def along(self, system: System, free: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
@@ -90,7 +84,7 @@ class QuickLook:
         ``known`` (R,) is what the look itself leaves, where the model is right.
         """
         share = float(np.max(self._worth(system, free, variants, known)) ** 2)
-        return share * (self._acceleration.size - ORDER)
+        return share * (self.acceleration.size - ORDER)
 
     def _worth(
         self, system: System, free: tuple[str, ...], variants: list[AbstractEffect], known: np.ndarray | None = None
@@ -112,10 +106,6 @@ class QuickLook:
         fall = np.where(size > 0.0, columns.T @ left / np.where(size > 0.0, size, 1.0), 0.0)
         signed = np.array([fixed_sign(v) for v in variants])
         return np.where(signed, np.maximum(fall, 0.0), np.abs(fall))
-
-    def average(self, torque: np.ndarray) -> np.ndarray:
-        """One or several signals (..., N) under the bump (..., R)."""
-        return self._bump.against(torque)
 
 
 def _led(torques: np.ndarray) -> np.ndarray:

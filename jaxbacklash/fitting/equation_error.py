@@ -19,8 +19,8 @@ from scipy import optimize
 from ..mechanics import AbstractEffect, Instant
 from ..pointwise import exerted
 from ..records import Record
-from ..records.force import force_edges
-from ..signals import Bump, choose_intervals, fit_spline, span
+from ..signals import choose_intervals, fit_spline, span
+from .averaged import Averaged
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ def estimate(
     def solve(half_play: float) -> tuple[float, np.ndarray]:
         columns = [damping_column]
         if spring:
-            columns.append(weak.integrate(_dead_zone(weak.z, half_play)))
+            columns.append(weak.average(_dead_zone(weak.z, half_play)))
         if inertia is None:
             columns.append(weak.acceleration)
             right = weak.force
@@ -138,43 +138,34 @@ def _dead_zone(z: np.ndarray, half_play: float) -> np.ndarray:
     return z - np.clip(z, -half_play, half_play)
 
 
-class _WeakForm:
-    """The record seen through the bump: one number a position of the bump, positions a quarter half-width apart."""
+class _WeakForm(Averaged):
+    """A record with the columns of the regression."""
 
     def __init__(self, record: Record) -> None:
-        self._bump = Bump(record.samples, record.dt)
-        channels = record.channels
-        zero = np.zeros(record.samples)
-        x = channels.get("x", zero)
-        self.z = channels["z"] if "z" in channels else channels["y"] - x
-        y = channels["y"] if "y" in channels else self.z + x
-        self._record, self._x, self._y = record, x, y
+        super().__init__(record)
+        self.z = record.channels["z"] if "z" in record.channels else self.y - self.x
+        self._record = record
         self.stiffness = 1.0
         self._speeds: tuple[np.ndarray, np.ndarray] | None = None
-        self.acceleration = self._bump.against(y, 2)
-        self.force = self._bump.against(force_edges(record, 1))
 
     def damping(self) -> np.ndarray:
-        return -self._bump.against(self.z, 1)
-
-    def integrate(self, torque: np.ndarray) -> np.ndarray:
-        return self._bump.against(torque)
+        return -self.average(self.z, 1)
 
     def torque(self, effect: AbstractEffect, half_play: float) -> np.ndarray:
         """Torque of an effect on the measured motion under the bump; its speeds are smoothed."""
-        return self.integrate(self._pointwise(effect, half_play, self.stiffness))
+        return self.average(self._pointwise(effect, half_play, self.stiffness))
 
     def steady(self, effect: AbstractEffect, reach: float) -> np.ndarray | None:
         """The same where neither play nor stiffness shows in it, None where they do; ``reach`` is the largest deflection."""
         first, other = self._pointwise(effect, 0.1 * reach, 1.0), self._pointwise(effect, 0.6 * reach, 2.0)
-        return self.integrate(first) if np.array_equal(first, other) else None
+        return self.average(first) if np.array_equal(first, other) else None
 
     def _pointwise(self, effect: AbstractEffect, half_play: float, stiffness: float) -> np.ndarray:
         dy, dx = self._smooth_speeds()
         deflection = _dead_zone(self.z, half_play)
         contact = (np.abs(self.z) > half_play).astype(float)
         numbers = np.asarray(stiffness), np.ones(())
-        now = Instant(self._record.t, self._y, dy, self._x, dx, self.z, dy - dx, deflection, contact, *numbers)
+        now = Instant(self._record.t, self.y, dy, self.x, dx, self.z, dy - dx, deflection, contact, *numbers)
         return exerted(effect, now)
 
     def _smooth_speeds(self) -> tuple[np.ndarray, np.ndarray]:
@@ -182,8 +173,8 @@ class _WeakForm:
             t, window = self._record.t, span(self._record.dt)
             spline = [
                 fit_spline(t, v, t[0], window / choose_intervals(t, v, window)) if np.any(v) else None
-                for v in (self._y, self._x)
+                for v in (self.y, self.x)
             ]
-            dy, dx = (np.zeros_like(self._y) if f is None else f(t, 1) for f in spline)
+            dy, dx = (np.zeros_like(self.y) if f is None else f(t, 1) for f in spline)
             self._speeds = dy, dx
         return self._speeds
