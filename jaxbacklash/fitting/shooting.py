@@ -23,7 +23,7 @@ import jax.numpy as jnp
 from ..mechanics import Drive
 from ..signals import DEGREE
 from ..solvers.substeps import run_panels
-from .awake import waking
+from .active_laws import rebuild_active
 from .chunks import by_chunks
 from .problem import Problem, Unknowns
 from .tangents import drive, rows, trajectories
@@ -292,7 +292,7 @@ def _meet(shared: tuple[Problem, Array], lead: tuple[Window, Shot]) -> Met:
     w = problem.windows
     n, q = own.start.shape[1], theta.shape[0]
     basis, lagged = _input_tangents(problem, theta, own.local)
-    motion_rows, end_rows = rows(w, waking(problem), theta, problem.active, shot.states, shot.u, shot.du, basis, lagged)
+    motion_rows, end_rows = rows(w, rebuild_active(problem), theta, problem.active, shot.states, shot.u, shot.du, basis, lagged)
     tie_weight = tie_weights(problem, n)
     weighted = jnp.concatenate(
         [weighed(motion_rows, w.weight[:, None, :]), weighed(end_rows, tie_weight[:, None, :])], axis=2

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from jaxbacklash.criticism.workbench import Workbench
-from jaxbacklash.fitting import awake
-from jaxbacklash.fitting.awake import Awake, acting, exerting, waking
+from jaxbacklash.fitting import active_laws as module
+from jaxbacklash.fitting.active_laws import ActiveLaws, active_laws, exerting, rebuild_active
 from jaxbacklash.fitting.setup import base_system, first_guess
 from jaxbacklash.fitting.shooting import linearise, shoot
 from jaxbacklash.mechanics import Drive
@@ -26,17 +26,17 @@ def bench():
 
 def asked(bench, effects, extra=()):
     problem, _ = bench.problem(effects, bench.base, extra=extra)
-    order, count = acting(problem.system, problem.base, problem.directions)
+    order, count = active_laws(problem.system, problem.base, problem.directions)
     return problem, [exerting(problem.system)[k] for k in np.asarray(order)[: int(count)]]
 
 
 def test_only_what_is_in_the_model_or_judged_is_asked(bench):
     effects = {"coulomb_joint": bench.laws["coulomb_joint"](Tc=2.0), "gravity": bench.laws["gravity"](G=0.0)}
     problem, names = asked(bench, effects)
-    assert len(exerting(problem.system)) > awake.FEW
+    assert len(exerting(problem.system)) > module.FEW
     assert set(names) == {"coulomb_joint", "gravity"}
     assert set(asked(bench, effects, ["preload.T0"])[1]) == {"coulomb_joint", "gravity", "preload"}
-    assert isinstance(waking(problem)(jnp.zeros(problem.directions.shape[1])), Awake)
+    assert isinstance(rebuild_active(problem)(jnp.zeros(problem.directions.shape[1])), ActiveLaws)
 
 
 @pytest.mark.parametrize(
@@ -48,8 +48,8 @@ def test_derivatives_are_those_of_all_laws(bench, monkeypatch, names):
     guess = first_guess(problem)
     shot = jax.jit(shoot)(problem, guess)
     found = eqx.filter_jit(lambda p, u, s: linearise(p, u, s))(problem, guess, shot)
-    monkeypatch.setattr(awake, "FEW", 1000)
-    assert not isinstance(waking(problem)(guess.theta), Awake)
+    monkeypatch.setattr(module, "FEW", 1000)
+    assert not isinstance(rebuild_active(problem)(guess.theta), ActiveLaws)
     whole = eqx.filter_jit(lambda p, u, s: linearise(p, u, s))(problem, guess, shot)
     for mine, other in zip(jax.tree.leaves(found), jax.tree.leaves(whole)):
         scale = float(np.max(np.abs(other), initial=0.0)) + 1e-300

@@ -25,7 +25,7 @@ FEW = 4
 """Laws that are all evaluated: calling them one by one would cost more."""
 
 
-class Awake(System):  # type: ignore[misc]  # mypy takes parameters that must be given for ones with a default
+class ActiveLaws(System):  # type: ignore[misc]  # mypy takes parameters that must be given for ones with a default
     """A system that asks only some of its laws for their torque: the first ``count`` of ``order`` (L,), which counts the laws of
     `exerting` from zero. The others are known to exert nothing."""
 
@@ -63,7 +63,7 @@ def exerting(system: System) -> list[str]:
     return [name for name in sorted(system.effects) if type(system.effects[name]).torque is not AbstractEffect.torque]
 
 
-def acting(system: System, base: Array, directions: Array) -> tuple[Array, Array]:
+def active_laws(system: System, base: Array, directions: Array) -> tuple[Array, Array]:
     """Which laws act: ``order`` (L,), those first, and their number ``count``.
 
     Parameters
@@ -81,19 +81,19 @@ def acting(system: System, base: Array, directions: Array) -> tuple[Array, Array
         moved = [moving[i] for i, _ in own]
         # A law without a strength never vanishes.
         found.append(jnp.any(jnp.stack([*strong, *moved])) if strong else jnp.asarray(True))
-    awake = jnp.stack(found)
-    return jnp.argsort(~awake, stable=True), jnp.sum(awake)
+    active = jnp.stack(found)
+    return jnp.argsort(~active, stable=True), jnp.sum(active)
 
 
-def waking(problem: Problem) -> Callable[[Array], System]:
+def rebuild_active(problem: Problem) -> Callable[[Array], System]:
     """As ``problem.rebuild``, for derivatives: a system of many laws asks only those that act, where that is faster."""
     long = problem.system.slides or len(problem.system.state_names) > 2
     if not long or len(exerting(problem.system)) <= FEW:
         return problem.rebuild
-    order, count = acting(problem.system, problem.base, problem.directions)
+    order, count = active_laws(problem.system, problem.base, problem.directions)
 
     def rebuild(theta: Array) -> System:
         s = problem.rebuild(theta)
-        return Awake(s.inertia, s.contact, s.damper, s.effects, s.observed, s.smoothed, order, count)
+        return ActiveLaws(s.inertia, s.contact, s.damper, s.effects, s.observed, s.smoothed, order, count)
 
     return rebuild
