@@ -17,7 +17,6 @@ from ..fitting.counts import few_counts
 from ..fitting.equation_error import Start
 from ..fitting.estimates import inflation, judge
 from ..fitting.fit import ABSOLUTE, prepare
-from ..fitting.held import correlation
 from ..fitting.left_over import predict, why_open
 from ..fitting.problem import Problem, Unknowns
 from ..fitting.result import Fit
@@ -25,6 +24,7 @@ from ..fitting.score import Score
 from ..fitting.search import TIES, inverse_information, silent
 from ..fitting.setup import base_system, free_names
 from ..fitting.size import check_size
+from ..fitting.stick_slip import correlation
 from ..fitting.windows import Windows
 from ..precision import require_double_precision
 from ..records import Record, oriented

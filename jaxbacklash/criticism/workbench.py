@@ -16,7 +16,6 @@ import numpy as np
 
 from ..fitting.fit import prepare
 from ..fitting.handed_on import handed_on
-from ..fitting.held import held, search_held
 from ..fitting.left_over import quieter
 from ..fitting.levenberg import Levenberg, Minimum, minimise
 from ..fitting.problem import Problem, Unknowns
@@ -24,6 +23,7 @@ from ..fitting.score import Score, begin_anew, score
 from ..fitting.search import ADEQUATE, LOOSE, NEAR, TIES, freedom, tie_windows
 from ..fitting.setup import first_guess, free_names, held_system, make_problem, read_through
 from ..fitting.softened import through_softened
+from ..fitting.stick_slip import search_stick_slip, sticks_and_slips
 from ..fitting.windows import Layout, Windows
 from ..mechanics import AbstractEffect, catalogue
 from ..parameters import specs, values, with_values
@@ -207,7 +207,7 @@ class Workbench:
             begin = self.gripped
             effects = {**effects, **{name: begin.effects[name] for name in grips}}
         problem, free = self.problem(effects, begin)
-        if through or held(problem.system):
+        if through or sticks_and_slips(problem.system):
             self._count()
             return self._run(problem, frozenset(effects), free, patience)
         unknowns = first_guess(problem)
@@ -246,7 +246,7 @@ class Workbench:
 
     def _run(self, problem: Problem, names: frozenset[str], free: tuple[str, ...], patience: int) -> Trial:
         """The fit of a link that friction holds: always one trajectory."""
-        unknowns, seen, steps = search_held(problem, np.zeros(problem.directions.shape[1]), limit=patience)
+        unknowns, seen, steps = search_stick_slip(problem, np.zeros(problem.directions.shape[1]), limit=patience)
         count = freedom(problem, tied=True)
         if np.sqrt(2.0 * float(seen["cost"]) / count) < LOOSE:
             _, solution, taken = tie_windows(problem, unknowns, TIES[0], limit=patience, near=COMPARED)

@@ -22,7 +22,6 @@ from .chance import explains
 from .equation_error import Start
 from .estimates import UNDETERMINED, Estimate, inflation, judge
 from .hard import SHORTEST, SUSPECT, contact_samples, harder, most_play, travel_in_contact
-from .held import held as is_held
 from .left_over import EXPLAINED, predict, settle_noise, why_open
 from .lengths import PANELS, longest_panel, score_window, shooting_window
 from .profile import with_profiles
@@ -31,6 +30,7 @@ from .score import Score, begin_anew, score
 from .search import Found, misfit, search, silent
 from .setup import base_system, check_motion, free_names, make_problem
 from .size import check_size
+from .stick_slip import sticks_and_slips
 from .windows import Layout, Windows, crossing_time, cut
 
 ABSOLUTE = ("force", "transmitted")
@@ -125,7 +125,7 @@ def fit(
     clock["cut"] = time.perf_counter()
 
     found = search(system, windows, names, starts=starts, seed=seed, rough=start is None, progress=progress)
-    if not found.tied and system.has_play and not is_held(system):
+    if not found.tied and system.has_play and not sticks_and_slips(system):
         begun = system, windows, layout, group
         found, (system, windows, layout, group) = _harder(found, begun, chosen, names, window, seed, progress)
     clock["search"] = time.perf_counter()
@@ -134,7 +134,7 @@ def fit(
     fitted = with_values(system, dict(zip(values(system), np.asarray(problem.parameters(unknowns.theta)))))
 
     scored, _ = score(problem, begin_anew(problem, unknowns.theta), layout, group=group)
-    if not is_held(system):
+    if not sticks_and_slips(system):
         settled = settle_noise(found, layout, scored, chosen, group)
         if settled.found is not found:
             found, layout, scored = settled.found, settled.layout, settled.scored
@@ -153,7 +153,7 @@ def fit(
         fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational, covariance=covariance,
         explained=explains(scored, fitted),
     )  # fmt: skip
-    if not is_held(system) and contact_samples(fitted, chosen[0].dt) < SHORTEST:
+    if not sticks_and_slips(system) and contact_samples(fitted, chosen[0].dt) < SHORTEST:
         estimates |= _between_samples(estimates, fitted, chosen, missed=scored[0].rms > EXPLAINED)
     if profile:
         estimates = with_profiles(problem, unknowns, estimates, names, stderr, progress)

@@ -11,10 +11,10 @@ import numpy as np
 from ..errors import NoAnswer
 from ..system import System
 from .handed_on import handed_on
-from .held import correlation, held, search_held
 from .levenberg import Levenberg, Minimum, minimise
 from .problem import Problem, Unknowns
 from .setup import first_guess, make_problem
+from .stick_slip import correlation, search_stick_slip, sticks_and_slips
 from .stretch import excess_of, stretch, told
 from .windows import Windows
 
@@ -81,8 +81,8 @@ def search(
     ``rough`` says that the values to start from may be far off: then a stretch of the record is searched first.
     """
     problem = make_problem(system, windows, free)
-    if held(system):
-        return _search_held(problem, free, starts=starts, seed=seed, progress=progress)
+    if sticks_and_slips(system):
+        return _search_stick_slip(problem, free, starts=starts, seed=seed, progress=progress)
     best, steps, agreeing, tried = _from_starts(problem, first_guess(problem), max(1, starts), seed, rough, progress)
     cost = float(best.stats["cost"])
     tied = False
@@ -157,7 +157,7 @@ def _elsewhere(problem: Problem, rng: np.random.Generator) -> np.ndarray:
     return np.clip(shift, problem.lower, problem.upper)
 
 
-def _search_held(
+def _search_stick_slip(
     problem: Problem, free: Sequence[str], *, starts: int, seed: int, progress: Callable[[str, float], None]
 ) -> Found:
     """`search` for a link that friction holds: one run through the record from each starting point, then, where the model is
@@ -168,7 +168,7 @@ def _search_held(
         said = f"fitting, start {attempt + 1} of {max(1, starts)}"
         progress(said, 0.05 + 0.6 * attempt / max(1, starts))
         theta = _elsewhere(problem, rng) if attempt else np.zeros(len(free))
-        tried.append(search_held(problem, theta, limit=30 if not attempt else 15))
+        tried.append(search_stick_slip(problem, theta, limit=30 if not attempt else 15))
     tried = [entry for entry in tried if np.isfinite(entry[1]["cost"])]
     if not tried:
         raise NoAnswer(NOWHERE)

@@ -17,9 +17,9 @@ from ..parameters import ravel, specs, values, with_values
 from ..records import Record
 from ..system import System, observe
 from .equation_error import Start, estimate
-from .held import held, march, place
 from .loop import read_loop
 from .problem import Problem, Unknowns
+from .stick_slip import march, place, sticks_and_slips
 from .windows import Windows
 
 MODELS = ("joint", "linear", "free")
@@ -210,7 +210,7 @@ def make_problem(system: System, windows: Windows, free: Sequence[str], *, tie: 
 def first_guess(problem: Problem) -> Unknowns:
     """Starts from the smoothed data, the base motion from its spline, parameters as they are."""
     w, system = problem.windows, problem.system
-    if held(system):
+    if sticks_and_slips(system):
         theta = np.zeros(problem.directions.shape[1])
         return Unknowns(theta, np.asarray(march(problem, theta, w.coefficients)), np.asarray(w.coefficients))
     y, dy = np.asarray(w.starts)

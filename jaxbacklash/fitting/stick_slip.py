@@ -30,7 +30,7 @@ FASTEST = 4.0
 """Samples in a period of the contact's resonance, at least: a lighter link cannot show in the record."""
 
 
-def held(system: System) -> bool:
+def sticks_and_slips(system: System) -> bool:
     """Whether the transmitted force is observed and dry friction holds the link to the ground."""
     return system.observed == "T" and "ground" in system.slides
 
@@ -80,7 +80,7 @@ def run(problem: Problem, theta: Any) -> tuple[Unknowns, dict[str, Any]]:
     return unknowns, minimise(tied, unknowns, Levenberg(limit=1)).stats
 
 
-def search_held(
+def search_stick_slip(
     problem: Problem, theta: Any, *, limit: int = 30, tell: Callable[[int], None] = lambda step: None
 ) -> tuple[Unknowns, dict[str, Any], int]:
     """Levenberg-Marquardt over the parameters alone, each trial a run of its own: where it ended, what it shows, steps taken."""
@@ -91,8 +91,8 @@ def search_held(
     damping, steps = 1e-2, 1
     while steps < limit and _sound(seen):
         move = _step(seen["schur"], seen["pull"], damping)
-        worth = 1e-2 * max(1.0, 2.0 * float(seen["cost"]) / rows)
-        if 0.5 * float(seen["pull"] @ move) < worth and damping < 1.0:
+        least_gain = 1e-2 * max(1.0, 2.0 * float(seen["cost"]) / rows)
+        if 0.5 * float(seen["pull"] @ move) < least_gain and damping < 1.0:
             break
         trial = _within(problem, theta, np.clip(theta + move, lower, problem.upper))
         further, shown = run(problem, trial)
@@ -102,7 +102,7 @@ def search_held(
         if gain > 0.0 and _sound(shown):
             theta, unknowns, seen = trial, further, shown
             damping = max(0.2 * damping, 1e-9)
-            if gain < worth:
+            if gain < least_gain:
                 break
         else:
             damping = max(10.0 * damping, 1e-6)
@@ -116,11 +116,11 @@ def _sound(seen: dict[str, Any]) -> bool:
     return bool(np.isfinite(seen["cost"]) and np.all(np.isfinite(seen["schur"])) and np.all(np.isfinite(seen["pull"])))
 
 
-def _step(schur: np.ndarray, pull: np.ndarray, damping: float) -> np.ndarray:
+def _step(schur: np.ndarray, score: np.ndarray, damping: float) -> np.ndarray:
     scale = np.sqrt(np.maximum(np.diag(schur), 0.0))
     scale = np.where(scale > 1e-12 * np.max(scale, initial=1e-300), scale, np.inf)
     scaled = schur / np.outer(scale, scale) + (damping + 1e-12) * np.eye(scale.size)
-    return np.asarray(np.linalg.lstsq(scaled, pull / scale, rcond=None)[0] / scale)
+    return np.asarray(np.linalg.lstsq(scaled, score / scale, rcond=None)[0] / scale)
 
 
 def _within(problem: Problem, old: np.ndarray, new: np.ndarray) -> np.ndarray:
