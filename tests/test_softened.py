@@ -2,17 +2,11 @@
 
 from types import SimpleNamespace
 
-import equinox as eqx
-import numpy as np
 import pytest
 
 from jaxbacklash.criticism.tried import Tried
 from jaxbacklash.criticism.workbench import Workbench
-from jaxbacklash.fitting.setup import base_system, first_guess
-from jaxbacklash.fitting.shooting import predictions
-from jaxbacklash.fitting.softened import softened
-from jaxbacklash.fitting.windows import Windows
-from jaxbacklash.parameters import values
+from jaxbacklash.fitting.setup import base_system
 
 from .hidden import hidden
 from .number_models import Model
@@ -25,27 +19,6 @@ def stuck(seed, times, seconds=12.0):
     base, free, _ = base_system(noisier(record, times, seed + 100), "joint", rig.inertia)
     bench = Workbench(noisier(record, times, seed + 100), base, free, 0.2)
     return bench, {n: bench.laws[n](**v) for n, v in effects.items()}
-
-
-def test_the_narrower_the_range_the_nearer_to_dry_friction():
-    bench, effects = stuck(5, 1.0, 4.0)
-    problem, _ = bench.problem(effects, bench.base)
-    guess = first_guess(problem)
-    run = eqx.filter_jit(predictions)
-    dry = np.asarray(run(problem, guess).motion)
-    apart = []
-    for width in (0.1, 0.03, 0.01):
-        soft = softened(problem, {"coulomb_joint": width})
-        assert soft.system.slides == ()
-        assert float(values(soft.rebuild(guess.theta))["coulomb_joint.width"]) == width
-        apart.append(float(np.max(np.abs(np.asarray(run(soft, guess).motion) - dry))))
-    assert apart[0] > 2.0 * apart[1] > 4.0 * apart[2] > 0.0
-    # All else is the same problem.
-    assert isinstance(soft.windows, Windows)
-    assert bool(eqx.tree_equal(soft.windows, problem.windows))
-    assert problem.system.slides == ("joint",)
-    # A law that states no range is left as it is.
-    assert np.array_equal(softened(problem, {"gravity": 0.1}).base, problem.base)
 
 
 @pytest.mark.slow

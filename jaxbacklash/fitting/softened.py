@@ -1,18 +1,8 @@
-"""A problem whose dry friction is spread over a range of speed, for a search that has stuck at the corners of the dry one.
-
-Whether a link that friction holds comes loose at some moment is decided by a hair, and where it is decided the misfit has a
-corner. A search stands still there, though beyond the next corner it would go on. Friction whose sign turns over a range of
-speed holds nothing quite and has no corners; narrowed step by step, it leads to a trajectory that dry friction can follow.
-"""
+"""The way through smooth friction that the search on free windows takes; it goes with that search."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-import equinox as eqx
-import numpy as np
-
-from ..parameters import values
+from .friction_homotopy import with_friction_widths as softened
 from .problem import Problem, Unknowns
 from .search import TIES, tie_windows
 
@@ -21,21 +11,6 @@ NARROWER = ((0.03, 0.01, 0.003, 0.001, 0.0003), (0.3, 0.1, 0.03, 0.01, 0.003))
 near what it is to lead to, the other from farther off."""
 STEPS = 20
 """Steps of the search at each of them: it need not arrive."""
-
-
-def softened(problem: Problem, widths: dict[str, float]) -> Problem:
-    """The same problem, its dry friction with the sign turning over ``widths`` [rad/s], by name of the law.
-
-    A user's own law that states no ``width`` softens its sign in its own way.
-    """
-    names = list(values(problem.system))
-    base = np.array(problem.base, dtype=float)
-    for law, width in widths.items():
-        if f"{law}.width" in names:
-            base[names.index(f"{law}.width")] = width
-    # Spread at both ports: so is friction that is only judged, and no other program is compiled.
-    spread = eqx.tree_at(lambda p: p.base, problem, base)
-    return replace(spread, system=replace(problem.system, smoothed=("joint", "ground")))
 
 
 def through_softened(problem: Problem, unknowns: Unknowns, speeds: dict[str, float], way: int) -> Unknowns:

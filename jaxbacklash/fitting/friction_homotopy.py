@@ -1,0 +1,32 @@
+"""Dry friction with a width: the first stages of a homotopy that leads a search to dry friction.
+
+Whether a link that friction holds comes loose at some moment is decided by a hair, and where it is decided the misfit has a
+corner. A search stands still there, though beyond the next corner it would go on. Friction whose sign turns over a range of
+speed, its width, holds nothing quite and has no corners; with ever smaller widths the trajectory goes over into that of dry
+friction. `jaxbacklash.fitting.continuation` says which widths a fit goes through.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import equinox as eqx
+import numpy as np
+
+from ..parameters import values
+from .problem import Problem
+
+
+def with_friction_widths(problem: Problem, widths: dict[str, float]) -> Problem:
+    """The same problem, its dry friction with the sign turning over ``widths`` [rad/s], by name of the law.
+
+    A user's own law that states no ``width`` has its sign turn over a range of its own.
+    """
+    names = list(values(problem.system))
+    base = np.array(problem.base, dtype=float)
+    for law, width in widths.items():
+        if f"{law}.width" in names:
+            base[names.index(f"{law}.width")] = width
+    # Smooth at both ports: so is friction that is only judged, and no other program is compiled.
+    widened = eqx.tree_at(lambda p: p.base, problem, base)
+    return replace(widened, system=replace(problem.system, smoothed=("joint", "ground")))

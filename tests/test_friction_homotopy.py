@@ -1,0 +1,39 @@
+"""Dry friction with a width: the same problem otherwise, and the nearer to dry friction the smaller the width."""
+
+from dataclasses import replace
+
+import equinox as eqx
+import numpy as np
+
+from jaxbacklash.fitting.fit import prepare
+from jaxbacklash.fitting.friction_homotopy import with_friction_widths
+from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
+from jaxbacklash.fitting.shooting import predictions
+from jaxbacklash.fitting.windows import Windows
+from jaxbacklash.mechanics import catalogue
+from jaxbacklash.parameters import values
+
+from .hidden import hidden
+
+
+def test_the_smaller_the_width_the_nearer_to_dry_friction():
+    record, rig, effects, _ = hidden("coulomb_joint", "chirp", 5, 4.0)
+    base, free, _ = base_system(record, "joint", rig.inertia)
+    system = replace(base, effects={n: catalogue()[n](**v) for n, v in effects.items()})
+    problem = make_problem(system, prepare(system, [record], 0.2)[0], free)
+    guess = first_guess(problem)
+    run = eqx.filter_jit(predictions)
+    dry = np.asarray(run(problem, guess).motion)
+    apart = []
+    for width in (0.1, 0.03, 0.01):
+        wide = with_friction_widths(problem, {"coulomb_joint": width})
+        assert wide.system.slides == ()
+        assert float(values(wide.rebuild(guess.theta))["coulomb_joint.width"]) == width
+        apart.append(float(np.max(np.abs(np.asarray(run(wide, guess).motion) - dry))))
+    assert apart[0] > 2.0 * apart[1] > 4.0 * apart[2] > 0.0
+    # All else is the same problem.
+    assert isinstance(wide.windows, Windows)
+    assert bool(eqx.tree_equal(wide.windows, problem.windows))
+    assert problem.system.slides == ("joint",)
+    # A law that states no width is left as it is.
+    assert np.array_equal(with_friction_widths(problem, {"gravity": 0.1}).base, problem.base)
