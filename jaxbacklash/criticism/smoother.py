@@ -210,8 +210,8 @@ def prior(s: Smoother, at: Point) -> tuple[Array, Array, Array, Array]:
         before = jnp.concatenate([jnp.zeros_like(on[:1]), on[:-1]])
         diagonal = on * (place @ own @ place.T) + before * (place @ after @ place.T)
         change = (both @ rows.T) * s.present[:, None]
-        pull = change @ rows
-        slope = pull[:, :nodes] + jnp.concatenate([jnp.zeros_like(pull[:1, nodes:]), pull[:-1, nodes:]])
+        gradient = change @ rows
+        slope = gradient[:, :nodes] + jnp.concatenate([jnp.zeros_like(gradient[:1, nodes:]), gradient[:-1, nodes:]])
         found.append((diagonal, on * (place @ link @ place.T), slope @ place.T, jnp.sum(change**2)))
     diagonal, below, slope, rough = (jnp.stack(part) for part in zip(*found))
     return diagonal, below, slope, rough

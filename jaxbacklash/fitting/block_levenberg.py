@@ -27,7 +27,7 @@ POOR, FAIR = 0.1, 0.5
 """Share of what it promised that a step must keep for the damping to stay, and to come down."""
 LEAST = 1e-4
 """Damping after a step is turned down, at least: less than that hardly changes a step."""
-STALLED, WORTH = 12, 20.0
+STALLED, PROGRESS = 12, 20.0
 """A search ends that over so many steps has gained less than so many times what may be left to gain."""
 
 
@@ -93,7 +93,7 @@ class BlockLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         trial = Unknowns(theta, y.starts + solution.local[:, :n].T, y.coefficients + solution.local[:, n:])
         predicted = jax.tree.map(pick, shot.predicted, state.predicted)
         steps = state.steps + 1
-        gained = state.mark[0] - blocks.cost > WORTH * self._least(args, blocks.cost)
+        gained = state.mark[0] - blocks.cost > PROGRESS * self._least(args, blocks.cost)
         mark = jax.tree.map(lambda new, old: jnp.where(gained, new, old), (blocks.cost, steps), state.mark)
         return y, SearchState(blocks, predicted, trial, damping, solution.promise, fell, steps, mark), shot
 

@@ -59,21 +59,21 @@ def solve(
     eye = jnp.eye(blocks.slope.shape[1])
     q = blocks.corner.shape[0]
     used = jnp.asarray(blocks.slope.shape[0] if used is None else used)
-    held = _held(blocks, used)
-    diagonal = blocks.diagonal + (damping * blocks.seen + held)[:, :, None] * eye
+    added = _added(blocks, used)
+    diagonal = blocks.diagonal + (damping * blocks.seen + added)[:, :, None] * eye
     done = eliminate(diagonal, blocks.below, blocks.border, blocks.corner, blocks.slope, blocks.slope_theta, used)
     if q:
         damped = done.schur + damping * jnp.diag(blocks.seen_theta)
         theta = _solve_scaled(damped, done.score) if between is None else _solve_between(damped, done.score, *between)
     else:
         damped, theta = done.schur, jnp.zeros(0)
-    # What holds an unknown that moves nothing is no information about it.
-    log_determinant = done.factor.log_determinant - jnp.sum(jnp.log(jnp.where(held > 0.0, held, 1.0)))
+    # What is added for an unknown that moves nothing is no information about it.
+    log_determinant = done.factor.log_determinant - jnp.sum(jnp.log(jnp.where(added > 0.0, added, 1.0)))
     return DampedStep(done.local(theta), theta, done.schur, done.score, done.promise(theta, damped), log_determinant)
 
 
-def _held(blocks: Blocks, used: Array) -> Array:
-    """Curvature (W, B) that holds an unknown that moves nothing, as the speed from which friction brings a link to rest at once.
+def _added(blocks: Blocks, used: Array) -> Array:
+    """Curvature (W, B) to add for an unknown that moves nothing, as the speed from which friction brings a link to rest at once.
 
     What rounding makes of its slope would send it anywhere, at any damping, and the misfit of all windows with it.
     """

@@ -363,11 +363,11 @@ def _ridge(problem: Problem, unknowns: Unknowns, blocks: Blocks, n: int) -> Bloc
     w = problem.windows
     level = _whisper(w)
     change = unknowns.coefficients - w.coefficients
-    _, pull, hold = _first_remembered(problem, unknowns.starts.T)
-    slope = blocks.slope + jnp.concatenate([pull, level * change], axis=1)
+    _, gradient, curvature = _first_remembered(problem, unknowns.starts.T)
+    slope = blocks.slope + jnp.concatenate([gradient, level * change], axis=1)
     size = blocks.diagonal.shape[1]
-    held = jnp.concatenate([hold, jnp.full(change.shape, level)], axis=1)
-    diagonal = blocks.diagonal + held[:, :, None] * jnp.eye(size)
+    added = jnp.concatenate([curvature, jnp.full(change.shape, level)], axis=1)
+    diagonal = blocks.diagonal + added[:, :, None] * jnp.eye(size)
     if problem.system.observed == "T":
         # Inside the play T says nothing of where the link is: a whisper of stiffness keeps the matrix regular, pulling nowhere.
         whisper = jnp.concatenate([(1e-5 * w.drop) ** 2, jnp.full(n - 2, (1e-5 * w.drop[1]) ** 2), jnp.zeros(size - n)])
