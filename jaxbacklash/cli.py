@@ -346,6 +346,33 @@ def map_(
     )  # fmt: skip
 
 
+@app.command(cls=Checked, epilog="Example: jaxbacklash studio run1.csv --heldout run2.csv --inertia 3.16")
+@reads
+def studio(
+    record: Annotated[
+        Path | None, typer.Argument(callback=there, help="A record to begin with; others of its folder are chosen on the page")
+    ] = None,
+    folder: Annotated[
+        Path | None,
+        typer.Option("--folder", help="The one folder that the page reads and saves in; default the record's, or this one"),
+    ] = None,
+    heldout: Heldout = None,
+    inertia: Inertia = None,
+    model: Annotated[str, typer.Option("--model", help="What the fit begins with: joint, linear or free")] = "joint",
+    reading: Reading = AS_IT_IS,
+    translation: Translation = False,
+    port: Annotated[int, typer.Option("--port", help="Port on this machine; 0 takes a free one")] = 0,
+    browser: Annotated[bool, typer.Option("--browser/--no-browser", help="Open the page in a browser")] = True,
+) -> None:
+    """Work at a page in the browser, on this machine alone: fit, see what is missing, add it, undo, compare, save."""
+    from .commands import studio as command
+
+    command.run(
+        record, folder=folder, heldout=heldout, inertia=inertia, model=model, translational=translation, reading=reading,
+        port=port, browser=browser,
+    )  # fmt: skip
+
+
 @computes(epilog="Example: jaxbacklash demo --out demo")
 def demo(
     out: Annotated[Path, typer.Option("--out", help="Folder for what the demo makes")] = Path("jaxbacklash-demo"),

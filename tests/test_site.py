@@ -100,7 +100,7 @@ def test_every_block_runs(name, tmp_path):
             assert done.returncode == 0, done.stderr
         for command in typed(block) if kind == "sh" else []:
             program, *words = shlex.split(command)
-            if program == "jaxbacklash":
+            if program == "jaxbacklash" and words[0] != "studio":  # which serves until it is ended
                 outcome = call(words, tmp_path)
                 assert outcome.code == 0, f"{command}: {outcome.err}"
 

@@ -1,0 +1,53 @@
+"""The page: its parts laid out, and looked at again whenever the session has changed."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+import panel as pn
+import panel_material_ui as pmui
+
+from .figures import Gallery
+from .parts.compare import ComparePart
+from .parts.failure import FailurePart
+from .parts.keep import KeepPart
+from .parts.missing import MissingPart
+from .parts.model import ModelPart
+from .parts.part import WIDE, Desk
+from .parts.record import RecordPart
+from .parts.status import StatusPart
+from .parts.values import ValuesPart
+from .session import Session
+
+PARTS = (RecordPart, ModelPart, FailurePart, MissingPart, ValuesPart, ComparePart, KeepPart)
+EVERY = 200
+"""Milliseconds between two looks at whether there is something new."""
+NAMELESS = ".MuiLinearProgress-root { display: none; }"
+"""The toolkit's own sign of work has no name for a screen reader; `StatusPart` tells what is computed."""
+SIDE = {"flex": "1 1 260px", "min-width": "0", "max-width": "100%"}
+MAIN = {"flex": "4 1 620px", "min-width": "0", "max-width": "100%"}
+
+
+def page(session: Session, gallery: Gallery, aside: ThreadPoolExecutor) -> Any:
+    """The page of one tab: another tab, or the same one loaded anew, shows the same session."""
+    desk = Desk(session, gallery, aside)
+    status, parts = StatusPart(desk), [kind(desk) for kind in PARTS]
+    tabs = pmui.Tabs(*((part.title, part.content) for part in parts), dynamic=True, **WIDE)
+    seen: dict[str, Any] = {}
+
+    def look() -> None:
+        status.tick()
+        now = session.version, tabs.active
+        if seen.get("now") != now:
+            seen["now"] = now
+            status.refresh()
+            parts[tabs.active].refresh()
+
+    tabs.param.watch(lambda _: look(), "active")
+    look()
+    pn.state.add_periodic_callback(look, period=EVERY)
+    side = pn.Column(status.content, styles=SIDE)
+    main = pn.Column(tabs, styles=MAIN)
+    both = pn.FlexBox(side, main, **WIDE)
+    return pmui.Page(title="jaxbacklash studio", main=[both], stylesheets=[NAMELESS])
