@@ -84,7 +84,7 @@ export function render({model, el}) {
     seen = {...next}
     if (same && model.stays && before) { set(before) }
   }
-  model.on("svg", draw)
+  for (const name of ["svg", "words"]) { model.on(name, draw) }  // they come one after the other
   draw()
   return figure
 }
