@@ -1,20 +1,19 @@
 """A score is not spoilt by what a law remembers, where a fit had let its windows go or nothing but the record is known."""
 
-import importlib
-
 import numpy as np
 import pytest
 
 from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.effects import Dahl
 from jaxbacklash.fitting.compare import compare
+from jaxbacklash.fitting.handed_on import follows
+from jaxbacklash.fitting.led_on import led_on
+from jaxbacklash.fitting.levenberg import Levenberg, minimise
 from jaxbacklash.fitting.problem import Unknowns
 from jaxbacklash.fitting.score import score
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.parameters import with_values
 from tests.hidden import hidden, noisier
-
-module = importlib.import_module("jaxbacklash.fitting.score")
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +35,7 @@ def jumping(unknowns, *windows, to=7000.0):
 
 
 @pytest.mark.parametrize("every", [1, 6], ids=["all", "a few"])
-def test_windows_whose_memory_jumps_begin_where_the_one_before_ends(fitted, monkeypatch, every):
+def test_windows_whose_memory_jumps_begin_where_the_one_before_ends(fitted, every):
     bench, problem, unknowns = fitted
     right = score(problem, unknowns, bench.layout, group=bench.group)[0][0]
     assert right.rms < 1.05
@@ -45,17 +44,15 @@ def test_windows_whose_memory_jumps_begin_where_the_one_before_ends(fitted, monk
     assert found.rms == pytest.approx(right.rms, rel=0.02)
     assert found.median == pytest.approx(right.median, rel=0.02)
     if every == 1:  # a few are caught up with by one search alone, all of them by several
-        monkeypatch.setattr(module, "ROUNDS", 0)
-        monkeypatch.setattr(module, "led_on", lambda problem, begin, follows: begin)
-        assert score(problem, jumping(unknowns, *inner), bench.layout, group=bench.group)[0][0].rms > 1.2
+        still = jumping(unknowns, *inner)
+        assert led_on(problem, still, follows(problem)).starts[2] == pytest.approx(unknowns.starts[2], abs=20.0)
+        alone = minimise(problem, still, Levenberg(limit=1)).stats["cost"]
+        assert float(alone) > 2.0 * float(minimise(problem, unknowns, Levenberg(limit=1)).stats["cost"])
 
 
-def test_what_does_not_jump_begins_as_it_was_fitted(fitted, monkeypatch):
-    bench, problem, unknowns = fitted
-    begun, minimise = [], module.minimise
-    monkeypatch.setattr(module, "minimise", lambda *given: begun.append(given[1].starts) or minimise(*given))
-    score(problem, unknowns, bench.layout, group=bench.group)
-    (starts,) = begun
+def test_what_does_not_jump_begins_as_it_was_fitted(fitted):
+    _, problem, unknowns = fitted
+    starts = led_on(problem, unknowns, follows(problem)).starts
     np.testing.assert_allclose(starts, unknowns.starts, atol=0.05)  # the memory is a share of the sliding torque
 
 
