@@ -1,34 +1,28 @@
 """The command line as a person meets it: results, exit codes, one sentence for every mistake."""
 
 import json
-import sys
 
 import numpy as np
 import pytest
 
-from jaxbacklash import base_motion_joint, cli, dump_model, read_record, simulate, write_record
+from jaxbacklash import base_motion_joint, dump_model, read_record, simulate, write_record
 from jaxbacklash.effects import Gravity
 from jaxbacklash.excitation import Multisine
 from jaxbacklash.simulation import as_record
 
+from . import in_process
 from .test_bad_input import CASES, table, without
 
 
 @pytest.fixture
-def call(monkeypatch, capsys, tmp_path):
+def call(monkeypatch, tmp_path):
     """Run the command line with the given words; returns exit code, stdout and stderr."""
     monkeypatch.setenv("JAXBACKLASH_CACHE", str(tmp_path / "cache"))
     monkeypatch.chdir(tmp_path)
 
     def run(*words):
-        monkeypatch.setattr(sys, "argv", ["jaxbacklash", *map(str, words)])
-        code = 0
-        try:
-            cli.main()
-        except SystemExit as end:
-            code = end.code or 0
-        told = capsys.readouterr()
-        return code, told.out, told.err
+        told = in_process.call([str(word) for word in words], tmp_path)
+        return told.code, told.out, told.err
 
     return run
 

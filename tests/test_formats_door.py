@@ -1,18 +1,18 @@
 """Every format through `look` and `fit`: the play of a simulated joint is found from each, whatever wrote the file."""
 
 import json
-import sys
 
 import numpy as np
 import pytest
 from scipy import io
 
-from jaxbacklash import base_motion_joint, cli, simulate
+from jaxbacklash import base_motion_joint, simulate
 from jaxbacklash.effects import Gravity
 from jaxbacklash.excitation import Multisine
 from jaxbacklash.records.formats.guard import quiet
 from jaxbacklash.simulation import as_record
 
+from .in_process import call
 from .logger_files import NAMED, RADIANS, WRITERS
 
 PLAY = 0.024
@@ -81,20 +81,14 @@ def table():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", FILES)
-def test_each_format_through_look_and_fit(tmp_path, name, table, monkeypatch, capsys):
+def test_each_format_through_look_and_fit(tmp_path, name, table):
     path = tmp_path / name
     with quiet():
         FILES[name](path, table)
 
     def run(*words):
-        monkeypatch.setattr(sys, "argv", ["jaxbacklash", *map(str, words)])
-        code = 0
-        try:
-            cli.main()
-        except SystemExit as end:
-            code = end.code or 0
-        told = capsys.readouterr()
-        assert code == 0, told.err
+        told = call([str(word) for word in words], tmp_path)
+        assert told.code == 0, told.err
         return told
 
     looked = json.loads(run("look", path, "--json").out)
