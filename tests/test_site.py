@@ -17,13 +17,13 @@ import jaxbacklash as jb
 from jaxbacklash.cli import app
 from tests.in_process import call
 from tests.test_examples import public
-from website import catalogue, commands
+from website import catalogue, commands, paper
 from website.links import broken
 from website.pictures import SHOWN
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS = ROOT / "docs"
-MADE = {"commands": commands.page, "catalogue": catalogue.page}
+MADE = {"commands": commands.page, "catalogue": catalogue.page, "paper": paper.page}
 PAGES = {path.relative_to(DOCS).with_suffix("").as_posix(): path for path in sorted(DOCS.rglob("*.md"))
          if path.stem not in {*MADE, "conventions", "changes", "benchmarks"}} | {"README": ROOT / "README.md"}  # fmt: skip
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```$", flags=re.DOTALL | re.MULTILINE)

@@ -11,7 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from . import benchmarks, catalogue, commands, links
+from . import benchmarks, catalogue, commands, links, paper
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCS, SITE = ROOT / "docs", ROOT / "site"
@@ -19,9 +19,9 @@ DOCS, SITE = ROOT / "docs", ROOT / "site"
 
 def write_pages() -> None:
     """The pages that are made from the package and from the papers at the door."""
-    made = {"commands": commands.page(), "catalogue": catalogue.page(), "benchmarks": benchmarks.page()}
-    for name, paper in (("conventions", "CONVENTIONS.md"), ("changes", "CHANGELOG.md")):
-        made[name] = (ROOT / paper).read_text(encoding="utf-8")
+    made = {"commands": commands.page(), "catalogue": catalogue.page(), "benchmarks": benchmarks.page(), "paper": paper.page()}
+    for name, at_the_door in (("conventions", "CONVENTIONS.md"), ("changes", "CHANGELOG.md")):
+        made[name] = (ROOT / at_the_door).read_text(encoding="utf-8")
     for name, text in made.items():
         (DOCS / f"{name}.md").write_text(text, encoding="utf-8")
 

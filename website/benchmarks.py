@@ -71,10 +71,12 @@ def section(name: str, run: dict[str, Any]) -> str:
 def scripts() -> dict[str, str]:
     """The first sentence of every script that can be run, by name."""
     found = {}
-    for path in sorted((ROOT / "benchmarks").glob("*.py")):
+    folder = ROOT / "benchmarks"
+    for path in sorted([*folder.glob("*.py"), *folder.glob("*/__main__.py")]):
         text = path.read_text(encoding="utf-8")
         if "__main__" in text:
-            found[path.stem] = (ast.get_docstring(ast.parse(text)) or "").splitlines()[0]
+            name = path.parent.name if path.stem == "__main__" else path.stem
+            found[name] = (ast.get_docstring(ast.parse(text)) or "").splitlines()[0]
     return found
 
 
