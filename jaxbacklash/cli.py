@@ -10,7 +10,6 @@ import atexit
 import functools
 import gc
 import sys
-import warnings
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -384,22 +383,22 @@ def demo(
     command.run(out=out, as_json=json)
 
 
-def _plain_warning(message: Any, category: Any, filename: str, lineno: int, file: Any = None, line: Any = None) -> None:
-    if sys.stderr is not None:
-        print(f"warning: {' '.join(str(message).split())}", file=sys.stderr)
+@computes(epilog="Example: jaxbacklash check")
+def check(json: Json = False) -> None:
+    """See within two minutes whether this installation computes what it should, and which extras it has."""
+    from .commands import check as command
+
+    command.run(as_json=json)
 
 
 def main() -> None:
     """Run the command line; every error ends in one sentence and an exit code, see `commands.outcome`."""
-    from .commands.outcome import fill_closed_streams, let_go_of_output, say, told
+    from .commands.outcome import fill_closed_streams, let_go_of_output, say, tell_plainly, told
     from .stopping import end_when_told
 
     fill_closed_streams()
     end_when_told()
-    warnings.showwarning = _plain_warning
-    warnings.filterwarnings("ignore", category=RuntimeWarning)  # of numpy's steps; what a command tells is finite, or an error
-    # A cache that cannot be read or written costs time, nothing else.
-    warnings.filterwarnings("ignore", message="Error (reading|writing) persistent compilation cache")
+    tell_plainly()
     for stream in (sys.stdout, sys.stderr):  # names of files may hold what the terminal's letters cannot show
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="backslashreplace")

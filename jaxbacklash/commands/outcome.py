@@ -10,6 +10,7 @@ import os
 import shlex
 import sys
 import traceback
+import warnings
 from typing import Any
 
 from ..errors import BadInput, NoAnswer
@@ -81,6 +82,19 @@ def let_go_of_output() -> None:
     """Nothing more is written to stdout, whose reader has gone or whose disk is full: Python would complain at its end."""
     nowhere: Any = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
+
+
+def tell_plainly() -> None:
+    """Warnings are a sentence each, and those that tell a user nothing are not shown."""
+    warnings.showwarning = _plain_warning
+    warnings.filterwarnings("ignore", category=RuntimeWarning)  # of numpy's steps; what a command tells is finite, or an error
+    # A cache that cannot be read or written costs time, nothing else.
+    warnings.filterwarnings("ignore", message="Error (reading|writing) persistent compilation cache")
+
+
+def _plain_warning(message: Any, category: Any, filename: str, lineno: int, file: Any = None, line: Any = None) -> None:
+    if sys.stderr is not None:
+        print(f"warning: {' '.join(str(message).split())}", file=sys.stderr)
 
 
 def fill_closed_streams() -> None:
