@@ -143,7 +143,7 @@ def test_maps_of_two_parameters_and_of_one():
     upper, lower = several(plot.exponents, 2, line)
     assert curve(upper, line.inverse_alpha.values, line.lyapunov.values)
     assert np.array_equal(lower.get_lines()[0].get_ydata(), line.poincare.values.ravel())
-    assert lower.get_ylabel() == "p at whole periods"
+    assert lower.get_ylabel() == "p at whole periods [half plays]"
     assert len(one(plot.exponents, line, samples=False).get_lines()) == 4
     angles = made_up_map("rad", "rad").isel(zeta=0)
     upper, lower = several(plot.exponents, 2, angles, degrees=True)

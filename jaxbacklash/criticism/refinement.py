@@ -18,7 +18,7 @@ from .ranking import of_stage, table
 from .steps import Stage
 from .verdict import Verdict
 
-JOINT = {"backlash": "b", "stiffness": "k", "damping": "c"}
+JOINT = {"backlash": "play", "stiffness": "stiffness", "damping": "damping"}
 
 
 @dataclass(frozen=True)
@@ -176,13 +176,14 @@ def _name(stage: Stage) -> str:
 
 
 def _moves(found: dict[str, Moved]) -> str:
-    said = []
+    said: list[str] = []
     for name, step in found.items():
         words = JOINT[name]
         if step.percent is not None:
             words += f" {step.percent:+.2g} %"
         if step.stderrs is not None:
-            words += f" ({step.stderrs:+.2g} s.e.)"
+            unit = "" if any("(" in one for one in said) else " standard errors"
+            words += f" ({abs(step.stderrs):.2g}{unit})"
         said.append(words)
     return ", ".join(said)
 

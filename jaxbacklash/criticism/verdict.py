@@ -69,7 +69,7 @@ def _what_explains(final: Trial, first: Fit, last: Fit, against: str) -> str:
         have = "The joint's play, stiffness and damping explain the record"
         return f"{have}: the prediction error is {error}, and {left}.{_few(last)}"
     fell = f"the prediction error falls from {first.score.rms:.3g} to {error}"
-    return f"Missing in the base model: {named}. With it {fell}, and {left}.{_few(last)}"
+    return f"Missing in the base model: {named}. With {'it' if len(final.names) == 1 else 'them'} {fell}, and {left}.{_few(last)}"
 
 
 def _few(last: Fit) -> str:

@@ -154,7 +154,7 @@ def text(fit: Fit, causes: Sequence[Named] = ()) -> str:
     note = doubt(fit)
     lines += [line(estimate, note) for estimate in fit.parameters.values()]
     lines += _correlations(fit)
-    how = "tied into one trajectory" if fit.tied else "each on its own"
+    how = "joined into one continuous motion" if fit.tied else "each with a start of its own"
     if fit.tried:
         lines.append(f"{fit.agreeing} of {fit.tried} starts reached this minimum; windows {how}; {fit.steps} steps")
     else:

@@ -131,7 +131,7 @@ def stretching(found: ChaosReport, *, ax: Where = None) -> list[Axes]:
         at = np.array([curve.lags[middle], min(curve.lags[middle] + reach, curve.lags[-1])])
         ax.plot(factor * dt * at, start + found.exponent.value * (at - at[0]), color=ink(ax), lw=1.0, ls=":",
                 label=f"local maps, {found.lyapunov:.3g} 1/s")  # fmt: skip
-    ax.set(xlabel=f"time [{clock}]", ylabel="mean log distance", xlim=(0.0, times[-1]))
+    ax.set(xlabel=f"time [{clock}]", ylabel="mean ln(distance / standard deviation)", xlim=(0.0, times[-1]))
     ax.legend(loc="lower right")
     return axes
 
@@ -180,7 +180,7 @@ def surrogates(found: ChaosReport, *, ax: Where = None) -> list[Axes]:
 
 def _walk(ax: Axes, found: ChaosReport) -> None:
     ax.plot(found.walk.p, found.walk.q, color=MEASURED, lw=0.5)
-    ax.set(xlabel="p", ylabel="q")
+    ax.set(xlabel="p [standard deviations]", ylabel="q [standard deviations]")
     ax.set_title(f"0-1 test: K = {found.walk.k:.2f}", loc="left")
     ax.set_aspect("equal", adjustable="datalim")
 @picture
@@ -215,12 +215,12 @@ def driven_growth(found: ChaosReport, name: str = "z", unit: str = "", *, ax: Wh
     factor, clock = clock_of(dt * one.samples)
     times = factor * dt * (one.first + GROUP * np.arange(one.rates.size + 1))
     grown = np.concatenate([[0.0], np.cumsum(one.rates)])
-    right.plot(times, grown, color=MEASURED, lw=1.2, label="log of a small difference")
+    right.plot(times, grown, color=MEASURED, lw=1.2, label="ln of a small difference")
     rate = (one.value or 0.0) / dt
     reach = [0.0, rate * (times[-1] - times[0]) / factor]
     right.plot(times[[0, -1]], reach, color=MODEL, lw=1.4, ls=":", label=f"{rate:.3g} 1/s")
     right.axhline(0.0, color=ink(right), lw=0.5, ls="--")
-    right.set(xlabel=f"time [{clock}]", ylabel="log of its growth", xlim=(times[0], times[-1]))
+    right.set(xlabel=f"time [{clock}]", ylabel="ln of its growth", xlim=(times[0], times[-1]))
     right.set_title("under the measured drive", loc="left")
     right.legend(loc="best")
     if len(axes) == 1:

@@ -100,8 +100,8 @@ def delay(found: ChaosReport, *, ax: Where = None) -> list[Axes]:
     axes = panels(ax, height=SHORT)
     ax = axes[0]
     ax.plot(found.delay.lags, found.delay.information, ".-", color=MEASURED)
-    ax.axvline(found.delay.samples, color=MODEL, lw=1.2)
-    ax.annotate(f" delay {found.delay.samples}", (found.delay.samples, ax.get_ylim()[1]), color=MODEL, va="top")
+    ax.axvline(found.delay.samples, color=MODEL, lw=1.2, label=f"delay taken: {found.delay.samples} samples")
+    ax.legend(loc="upper right")
     ax.set(xlabel="delay [samples]", ylabel="mutual information [nat]", ylim=(0.0, None))
     return axes
 

@@ -110,7 +110,7 @@ def exponent_curve(
     legend_above(axes)
     if samples is not None and len(axes) > 1:
         scatter_samples(axes[1], x, np.asarray(samples), MEASURED, play)
-        axes[1].set_ylabel("p at whole periods" if length == "half plays" else with_unit("z at whole periods", length))
+        axes[1].set_ylabel(with_unit("p at whole periods" if length == "half plays" else "z at whole periods", length))
     axes[-1].set_xlabel(axis_label(name, unit))
     return axes
 
@@ -198,8 +198,8 @@ def basin_picture(
         ax.plot(dots[0], dots[1], "o", color=BASINS[k % len(BASINS)], mec="white", mew=ring, ms=size)
     for edge in play or ():
         ax.axvline(edge, color="black", lw=0.8, ls="--")
-    letter = "p" if length == "half plays" else "z"
-    ax.set(xlabel=f"{letter} at the start [{length}]", ylabel=f"{letter}′ at the start", xlim=_sides(p), ylim=_sides(v))
+    letter, speed = ("p", "half plays per τ") if length == "half plays" else ("z", f"{length}/s")
+    ax.set(xlabel=f"{letter} at the start [{length}]", ylabel=f"{letter}′ at the start [{speed}]", xlim=_sides(p), ylim=_sides(v))
     ax.grid(visible=False)
     return axes
 

@@ -88,8 +88,9 @@ def candidate_ranking(
             best = place == 0 and not (is_number(told) and told <= 0.0)
             ax.barh(place, float(value) - lowest, left=lowest, height=0.62, color=MODEL if best else GAP, lw=0)
         else:
-            ax.annotate(str(entry.get("why") or "not evaluated"), (0.0, place), xycoords=("axes fraction", "data"),
-                        xytext=(4, 0), textcoords="offset points", va="center", fontsize=8)  # fmt: skip
+            # Right of the line that marks the noise, which would cross it.
+            ax.annotate(str(entry.get("why") or "not evaluated"), (1.0, place), xytext=(5, 0), textcoords="offset points",
+                        va="center", fontsize=8)  # fmt: skip
     _column(ax, 46, "rms", [short(value) for value in values])
     if any(is_number(entry.get("evidence")) for entry in kept):
         _column(ax, 98, "evidence", [format_evidence(entry.get("evidence")) for entry in kept])

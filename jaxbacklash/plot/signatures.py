@@ -174,7 +174,8 @@ def pattern_region(
     for one, (values, title) in zip(axes, both):
         shown = values if names.index(across) > names.index(up) else values.T
         image = one.pcolormesh(x, scale(y), shown, cmap="viridis", vmin=0.0, rasterized=True)
-        one.figure.colorbar(image, ax=one, shrink=0.85).ax.tick_params(labelsize=7)
+        bar = one.figure.colorbar(image, ax=one, shrink=0.85, label="probability")
+        bar.ax.tick_params(labelsize=7)
         one.set(xlabel=NAMES.get(across, across))
         one.set_title(f"{title} of the pattern, over the rest", loc="left")
         one.grid(False)

@@ -68,7 +68,7 @@ def _damping(ax: Axes, found: Skeletons, unit: str) -> None:
     c = best.parameters["damping"].value
     if c is not None:
         mass = found.inertia or _value(best, "inertia") or 1.0
-        ax.axhline(c / (2.0 * mass), color=ink(ax), lw=0.9, ls=(0, (5, 2)), label="fitted joint")
+        ax.axhline(c / (2.0 * mass), color=ink(ax), lw=1.1, ls=(0, (1, 1.5)), label="fitted damping")
         ax.set_ylim(0.0, max(2.5 * c / (2.0 * mass), 1.2 * float(np.max(best.curve("damping").mean, initial=0.0))))
     ax.set(xlabel=with_unit("amplitude of z", unit), ylabel="h₀ [1/s]", xlim=(0.0, None))
     ax.set_title("damping curve", loc="left")

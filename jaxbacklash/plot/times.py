@@ -43,10 +43,10 @@ def measured_against_model(
     whole.set(ylabel=with_unit(label, unit), xlim=(t[0], t[-1]))
     in_degrees(whole, "right", unit)
     if len(axes) == 1:
-        legend_above(axes, *_marks(whole, None, windows=False))
+        legend_above(axes, *_marks(whole, None, label, windows=False))
         whole.set_xlabel("time [s]")
         return axes
-    legend_above(axes, *_marks(whole, noise))
+    legend_above(axes, *_marks(whole, noise, label))
     whole.set_title("the whole record, time in s", loc="left")
     edges = window_bounds(t, window_starts)
     misfit = window_misfit(measured - model, edges)
@@ -61,14 +61,14 @@ def measured_against_model(
         local = [e - stretch.start for e in edges if stretch.start <= e <= stretch.stop]
         _zoom(upper, t[stretch], measured[stretch], model[stretch], local, noise)
         _left_over(lower, t[stretch], (measured - model)[stretch], local, noise, unit)
-        missed = _how_far(misfit[index], noise, unit)
+        missed = _how_far(misfit[index], noise, label, unit)
         upper.set_title(f"{'AB'[place]}, {name}: {missed}, window from {t[edges[index]]:.5g} s", loc="left")
         upper.tick_params(labelbottom=False)
         lower.set_xlim(upper.get_xlim())
         if place == 0:
             upper.set_ylabel(with_unit(label, unit))
         if noise:
-            lower.set_ylabel("difference\nover noise" if place == 0 else "")
+            lower.set_ylabel(f"difference over\nnoise of {label}" if place == 0 else "")
     return axes
 
 
@@ -96,13 +96,13 @@ def stretch_of_model(
     local = [e - stretch.start for e in (stretch.start, *inner, stretch.stop)]
     _zoom(axes[0], t[stretch], measured[stretch], model[stretch], local, noise)
     axes[0].set_ylabel(with_unit(label, unit))
-    legend_above(axes, *_marks(axes[0], noise))
+    legend_above(axes, *_marks(axes[0], noise, label))
     if len(axes) == 1:
         axes[0].set_xlabel("time [s]")
         return axes
     _left_over(axes[1], t[stretch], (measured - model)[stretch], local, noise, unit)
     if noise:
-        axes[1].set_ylabel("difference\nover noise")
+        axes[1].set_ylabel(f"difference over\nnoise of {label}")
     return axes
 
 
@@ -172,17 +172,18 @@ def channels_in_time(t: Any, channels: dict[str, tuple[Any, str]], *, ax: Where 
     return axes
 
 
-def _how_far(misfit: float, noise: float | None, unit: str) -> str:
+def _how_far(misfit: float, noise: float | None, label: str, unit: str) -> str:
+    """The rms of a difference in the channel's own noise: the prediction error counts the noise of the input as well."""
     if not np.isfinite(misfit):
         return "no prediction"
-    return f"{misfit / noise:.3g} times the noise" if noise else f"{short(misfit)} {unit} rms"
+    return f"{misfit / noise:.3g} times the noise of {label}" if noise else f"{short(misfit)} {unit} rms"
 
 
-def _marks(ax: Axes, noise: float | None, *, windows: bool = True) -> tuple[list[Any], list[str]]:
+def _marks(ax: Axes, noise: float | None, label: str, *, windows: bool = True) -> tuple[list[Any], list[str]]:
     """The marks of a record and its model, and their names."""
     dots = Line2D([], [], color=MEASURED, marker="o", ms=4, mew=0, ls="none")
     line, shade = Line2D([], [], color=MODEL, lw=1.2), Patch(color=ink(ax), alpha=0.08, lw=0)
-    names = ["measured", "model, ±2 times the noise" if noise else "model", "every other window"]
+    names = ["measured", f"model, ±2 times the noise of {label}" if noise else "model", "every other window"]
     return [dots, line, shade][: 2 + windows], names[: 2 + windows]
 
 

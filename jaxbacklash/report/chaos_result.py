@@ -9,7 +9,7 @@ import numpy as np
 
 from ..records import MeasuredSeries
 from ..timeseries import ChaosReport
-from ..timeseries.result import drift_words, why_wide
+from ..timeseries.result import drift_words, sizes_in_words, why_wide
 from .result import SCHEMA, finite
 
 
@@ -69,8 +69,9 @@ def choices(found: ChaosReport) -> list[tuple[str, str]]:
         maps = ", ".join(f"{one.dimension} with {one.neighbours}" for one in (found.exponent or found.raw_exponent).maps)
         rows.append(("local maps", f"those that predict best out of sample; coordinates with neighbours: {maps}"))
     if found.driven is not None and found.driven.value is not None:
-        cells = ", ".join(str(one) for one, _, _ in found.driven.used)
-        rows.append(("law of motion", f"tables of {cells} cells, those that predict best the stretches they were not fitted to"))
+        cells = sizes_in_words(found.driven.used)
+        what = f"the acceleration as tables over position and velocity, of {cells} cells"
+        rows.append(("law of motion", f"{what}: those that predict best on stretches they were not fitted to"))
         if found.driven.drift:
             rows.append(("the law drifts", f"{drift_words(found.driven.drift)}: so it predicts clearly better"))
     if found.cleaned is not None:

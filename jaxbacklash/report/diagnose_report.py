@@ -29,7 +29,10 @@ def _ranking(stage: dict[str, Any], adequate: bool) -> list[Panel]:
     if adequate or not stage["candidates"]:
         return []
     drawn = svg_of(candidate_ranking, stage["candidates"], current=stage["rms_over_noise"])
-    sentence = "What the error would become with one effect added; evidence allows for the parameters an effect brings."
+    sentence = (
+        "What the error would become with one effect added. Evidence allows for the parameters an effect brings: above 10 it is "
+        "strong, below 0 it speaks against the effect."
+    )
     detail = (
         "Predicted from the sensitivities of the fitted model, at the best strength and shape of each effect; nothing was "
         "fitted anew. Adding one by name (fit --effects) or letting refine do it shows what is true of it."

@@ -64,17 +64,19 @@ def cross_check_table(check: Any, last: Entry) -> dict[str, Any] | None:
     methods = [str(key) for key, value in check.items() if isinstance(value, Mapping)]
     fitted = parameters_of(last)
     names = [name for name in BASE if any(name in check[method] for method in methods)]
+    repeated = _repeated([check[method].get(name) for name in names for method in methods])
     rows = []
     for name in names:
         unit = str(fitted.get(name, {}).get("unit") or "")
-        cells = [brief(fitted.get(name)), *(_any_value(check[method].get(name), unit) for method in methods)]
-        rows.append({"label": LABELS[name], "cells": cells})
+        told = (_any_value(check[method].get(name), unit, repeated) for method in methods)
+        rows.append({"label": LABELS[name], "cells": [brief(fitted.get(name)), *told]})
     agrees = check.get("agrees")
     words = "No second method could judge this fit."
     if agrees is not None:
         words = "The methods agree." if agrees else "The methods do not agree."
     if check.get("text"):
-        return {"methods": [m.replace("_", " ") for m in methods], "rows": rows, "sentence": str(check["text"])}
+        said = [str(check["text"]), *(_sentence(why) for why in repeated if why not in str(check["text"]))]
+        return {"methods": [m.replace("_", " ") for m in methods], "rows": rows, "sentence": " ".join(said)}
     within = f" Tolerance: {check['tolerance']}." if check.get("tolerance") and agrees is not None else ""
     why = f" {_sentence(check['why'])}" if check.get("why") else ""
     return {"methods": [m.replace("_", " ") for m in methods], "rows": rows, "sentence": f"{words}{within}{why}"}
@@ -85,15 +87,24 @@ def skeleton_tables(result: Entry) -> dict[str, Any] | None:
     if result.get("command") != "skeleton":
         return None
     methods = [name for name in ("hilbert", "wavelet") if isinstance(result.get(name), Mapping)]
+    repeated = _repeated([result[method].get(name) for method in methods for name in BASE])
     rows = []
     for name in (*BASE, "inertia"):
         if any(name in result[method] for method in methods):
             cells = []
             for entry in (result[method].get(name, {}) for method in methods):
-                shown = [f"{number} {unit}".rstrip() for number, unit in parts(entry)]
-                cells.append({"lines": shown, "why": str(entry.get("why") or "")})
+                shown, why = [f"{number} {unit}".rstrip() for number, unit in parts(entry)], str(entry.get("why") or "")
+                cells.append({"lines": shown, "why": "" if why in repeated else why})
             rows.append({"label": LABELS.get(name, "inertia J"), "cells": cells})
-    return {"methods": methods, "rows": rows, "warnings": [str(sentence) for sentence in result.get("warnings") or []]}
+    warnings = [str(sentence) for sentence in result.get("warnings") or []]
+    said = [*(why for why in repeated if why not in warnings), *warnings]
+    return {"methods": methods, "rows": rows, "warnings": said}
+
+
+def _repeated(entries: Sequence[Any]) -> list[str]:
+    """Reasons that more than one missing value has, each once: they are told beside the table, not in every cell."""
+    whys = [str(one["why"]) for one in entries if isinstance(one, Mapping) and not is_number(one.get("value")) and one.get("why")]
+    return [why for k, why in enumerate(whys) if whys.count(why) > 1 and why not in whys[:k]]
 
 
 def best_method(result: Entry) -> dict[str, Any]:
@@ -130,10 +141,11 @@ def brief(entry: Entry | None, *, unit: bool = True) -> str:
     return " ".join(shown[0]).rstrip() if unit else shown[0][0]
 
 
-def _any_value(entry: Any, unit: str) -> str:
+def _any_value(entry: Any, unit: str, repeated: Sequence[str] = ()) -> str:
     if isinstance(entry, Mapping):
         if not is_number(entry.get("value")):
-            return f"none: {entry['why']}" if entry.get("why") else UNKNOWN
+            why = str(entry.get("why") or "")
+            return UNKNOWN if not why else "none" if why in repeated else f"none: {why}"
         return brief({"unit": unit, **entry})
     return brief({"value": entry, "unit": unit}) if is_number(entry) else UNKNOWN
 

@@ -113,6 +113,6 @@ def _rest(refinement: Refinement, have: str, picture: Panel) -> Panel:
     score = refinement.fit.score
     sentence = (
         f"All windows are off by {error_in_words(score)}, the median one by {score.median:.3g} times; noise alone would "
-        "stay within two noises and hang together nowhere."
+        "rarely exceed three times the noise, and depend on no position, speed or time."
     )
     return replace(picture, title=f"What is left: {have}", sentence=sentence, anchor="last-residual")

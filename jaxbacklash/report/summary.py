@@ -64,9 +64,14 @@ def summarise(result: Entry) -> dict[str, Any]:
     }
 
 
-def verdict_words(entry: Entry) -> dict[str, str]:
-    """A parameter's verdict as a class, a sign and a sentence; a null value always says why."""
+def verdict_words(entry: Entry, doubted: bool = False) -> dict[str, str]:
+    """A parameter's verdict as a class, a sign and a sentence; a null value always says why.
+
+    Nothing is ticked where the model is ``doubted``: what it misses may have moved the value by more than any error says.
+    """
     known = is_number(entry.get("value"))
+    if known and doubted and entry.get("verdict", "found") == "found":
+        return {"kind": "other", "mark": "!", "text": "fitted by a model that misses something"}
     verdict = str(entry.get("verdict") or ("found" if known else "not determined"))
     why = str(entry.get("why") or ("" if known else "no reason was recorded"))
     kind = verdict.replace(" ", "-") if verdict in ("found", "one-sided", "not determined") else "other"
@@ -103,7 +108,7 @@ def parameter_rows(stages: Sequence[Entry], note: str = "") -> list[dict[str, An
                 "values": [f"{number} {shown}".rstrip() for number, shown in parts(entry)],
                 "interval": _noted(format_interval(entry.get("ci95"), entry.get("stderr"), unit), note),
                 "moved": _moved(first.get(name), entry) if len(stages) > 1 else "",
-                "verdict": verdict_words(entry),
+                "verdict": verdict_words(entry, bool(note)),
             }
         )
     return rows
@@ -208,7 +213,8 @@ def _step(step: Any) -> str:
         return ""
     percent, errors = step.get("percent"), step.get("stderrs")
     said = [f"{percent:+.2g} %"] if is_number(percent) else []
-    said += [f"{errors:+.2g} s.e."] if is_number(errors) else []
+    if errors is not None and is_number(errors):
+        said.append(f"{abs(errors):.2g} standard errors")
     return ", ".join(said)
 
 

@@ -113,7 +113,7 @@ def sentence(missed: Omitted, names: tuple[str, ...], values: np.ndarray, mass: 
     """What is missing, what it does to the answer, and what to do about it; ``mass`` is the inertia, 1 where unknown."""
     name, percent = names[missed.worst], 100.0 * missed.shift[missed.worst] / max(abs(values[missed.worst]), 1e-300)
     other = f" (or {' or '.join(WORDS[rival] for rival in missed.rivals)})" if missed.rivals else ""
-    remedy = "`fit --effects` and `refine` can take it along"
+    remedy = "fit --effects and refine can take it along"
     if missed.name == "gravity":
         remedy = f"if it is the weight, say --gravity {missed.strength / mass:.4g} (in 1/s^2)"
     return (

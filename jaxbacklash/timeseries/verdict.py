@@ -142,7 +142,7 @@ def judge_driven(found: Driven, dt: float, drive: str) -> Verdict:
     seconds, rate = found.samples * dt, abs(found.value) / dt
     same = f"Two links that start apart under the same {drive}"
     fact = f"by a factor of e every {1.0 / max(rate, 1e-300):.2g} s over these {seconds:.3g} s"
-    only = f"The exponent is conditional on this very {drive}: another one has another."
+    only = f"The exponent is conditional on this {drive}: under another it would differ."
     if found.word == "separate":
         return Verdict("chaotic", f"{same} separate, {fact}. {only}")
     if found.word == "meet":

@@ -26,10 +26,14 @@ function limits(channels, first, end, least) {
   return [middle - 1.08 * half, middle + 1.08 * half];
 }
 
-// Round values on an axis, about as many as wanted, each with its text.
+// Round values on an axis, about as many as wanted and at least two, each with its text.
 function steps(low, high, wanted) {
   const rough = (high - low) / wanted, power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].find((n) => n * power >= rough) * power;
+  const round = [0.1, 0.2, 0.5, 1, 2, 5, 10].map((n) => n * power);
+  const inside = (step) => Math.floor(high / step) - Math.ceil(low / step) + 1;
+  let place = round.findIndex((step) => step >= rough * (1 - 1e-9));
+  while (place > 0 && inside(round[place]) < 2) place--;
+  const step = round[place];
   const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const marks = [];
   for (let n = Math.ceil(low / step); n * step <= high; n++) {
