@@ -111,29 +111,20 @@ class AbstractEffect(eqx.Module):
         strengths = {n: s.scale for n, s in described.items() if shaped and s.null is not None and s.scale}
         return [cls(**strengths)]
 
-    @classmethod
-    def ringing(cls, system: Any, omega: float, size: float = 0.0) -> AbstractEffect | None:
-        """Point for a fit to start from that makes a joint like ``system`` ring at ``omega`` [rad/s]; None where it cannot.
+    def simpler(self) -> list[AbstractEffect]:
+        """Laws with fewer parameters that this one contains or comes near to, each at the values that are nearest to this one's.
 
-        ``size`` is that of the law as a multiple of its guess, 0 where it is too weak to shift its own tone.
+        The default are those that it `absorbs`, parameters of one name being the same.
         """
-        return None
-
-    @classmethod
-    def in_place_of(cls, other: AbstractEffect, motion: Any | None = None) -> list[AbstractEffect]:
-        """Points from which a fit may start where this law takes the place of a fitted one of its ``family``; none: `guesses`."""
-        return []
+        own = {f.name: getattr(self, f.name) for f in dataclasses.fields(self) if "spec" in f.metadata}
+        laws = [catalogue()[name] for name in self.absorbs]
+        return [law(**{f.name: own[f.name] for f in dataclasses.fields(law) if f.name in own}) for law in laws]
 
     def scaled(self, factor: float) -> AbstractEffect:
         """The same law ``factor`` times as strong: along a given motion it exerts ``factor`` times the torque."""
         described = {f.name: f.metadata["spec"] for f in dataclasses.fields(self) if "spec" in f.metadata}
         nulls = {n: s.null for n, s in described.items() if s.null is not None and not s.fixed}
         return dataclasses.replace(self, **{n: null + factor * (getattr(self, n) - null) for n, null in nulls.items()})
-
-    def loading(self, inertia: float) -> float:
-        """How many times the link's inertia [kg m^2] slow motion sees with this law: a model without it takes all torques for so
-        many times less than they are."""
-        return 1.0
 
     def torque(self, now: Instant) -> Scalar:
         """Torque on the link [N m], dry friction included (in the direction ``now`` knows, else smoothed)."""

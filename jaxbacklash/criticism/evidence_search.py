@@ -7,23 +7,35 @@ and the most promising are fitted; then each law is left out, then each is repla
 
 from __future__ import annotations
 
+import math
+import warnings
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 
+from ..fitting.continuation import SHARP, TIGHTEST
 from ..fitting.search import silent
-from .candidates import Candidate
-from .evidence import demanded, noise_too_large
+from .candidates import Candidate, share_of_rest
+from .evidence import demanded, leaves_noise, noise_too_large
 from .fitted_model import FittedModel
-from .model_fitter import ModelFitter
-from .moves import add, contained_instead, drop
-from .screening import screen, worth
-from .steps import Step
+from .model_fitter import ExhaustedError, ModelFitter
+from .moves import add, added, drop, simpler_instead
+from .screening import net_gain, screen
+from .steps import SearchStep
 
+MOST_LAWS = 4
+"""Laws in a model at most: more small ones stand for one that the catalogue does not have."""
 MOST_FITTED = 3
 """Candidates beside one model that are fitted at most."""
 CLEAR_SHARE = 0.1
 """Share of what a model leaves, in units of the criterion, that a law must take away if more is left."""
 PROMISING = 0.25
-"""Share of the most promising candidate's worth that earns a fit."""
+"""Share of the most promising candidate's predicted gain that earns a fit."""
+
+
+SCATTER = 60.0
+"""Evidence up to which two models with dry friction are begun once more before they are compared."""
+CLOSE = 0.8
+"""Share of a candidate's predicted gain that leaves nothing which another one must promise to be fitted too."""
 
 
 class EvidenceSearch:
@@ -36,32 +48,55 @@ class EvidenceSearch:
     """
 
     def __init__(self, fitter: ModelFitter, progress: Callable[[str, float], None] = silent) -> None:
-        self.bench, self.progress = fitter, progress
-        self.path: list[Step] = []
+        self.fitter, self.progress = fitter, progress
+        self.path: list[SearchStep] = []
         self.level: dict[tuple[str, ...], FittedModel] = {}
         self._screened: dict[tuple[frozenset[str], float], list[Candidate]] = {}
 
-    def run(self) -> list[Step]:
+    def run(self) -> list[SearchStep]:
         """The path from the joint alone to the model kept."""
         self.progress("fitting the joint alone", 0.1)
-        model = self.bench.fit_model({})
-        self.path = [Step(model, None, (), ())]
-        while (better := self.better_neighbour(model)) is not None:
-            model = better
-        if noise_too_large(model) and (factor := self.bench.too_loud(model)) != 1.0:
-            self.bench.quieter(factor)
-            self.bench.fitted.clear()
+        model = self.fitter.fit_model({})
+        self.path = [SearchStep(model, None, (), ())]
+        try:
+            while (better := self.better_neighbour(model)) is not None:
+                model = better
+        except ExhaustedError:
+            self._end_early()
+            model = self.path[-1].model
+        model = self.clear(model)
+        self._note_ranking()
+        model = self.fitter.sharpened(model)
+        self.path[-1] = replace(self.path[-1], model=model)
+        if noise_too_large(model) and (factor := self.fitter.too_loud(model)) != 1.0:
+            self.fitter.quieter(factor)
             self._screened.clear()
             return self.run()
         self.level = self.as_likely(model)
         return self.path
+
+    def clear(self, model: FittedModel) -> FittedModel:
+        """The last model of the path, but where it leaves out a torque still: then the last to which an addition has led that
+        took a clear share of what was left. What took little and left much stood in for something else."""
+        while not leaves_noise(model) and len(self.path) > 1:
+            before = self.path[-2].model
+            if before.criterion - model.criterion > CLEAR_SHARE * before.rest or model.names < before.names:
+                break
+            self.path.pop()
+            model = before
+        return model
+
+    def _end_early(self) -> None:
+        self.fitter.budget = math.inf  # what is still to be told of the model kept takes a few more
+        said = f"the search was ended after {self.fitter.fits} fits: another effect may do as well or better"
+        warnings.warn(said, stacklevel=3)
 
     def better_neighbour(self, model: FittedModel) -> FittedModel | None:
         """The best model one move away, None where no move helps: additions first, then fewer laws, then other ones."""
         for neighbours, least in (
             (self.with_one_more, self.demand), (self.with_one_fewer, -self.demand), (self.with_another, self.demand),
         ):  # fmt: skip
-            found = max(neighbours(model), key=lambda other: self.evidence(model, other), default=None)
+            found = self.best(model, neighbours(model))
             if found is not None and self.evidence(model, found) > least:
                 self._step(model, found)
                 return found
@@ -70,62 +105,115 @@ class EvidenceSearch:
     @property
     def demand(self) -> float:
         """Fall of the criterion that a move must bring: as many laws as there are had their chance to fool it."""
-        return demanded(self.bench)
+        return demanded(self.fitter)
 
     def evidence(self, model: FittedModel, other: FittedModel) -> float:
-        """Evidence for ``other``: fall of the criterion, divided where what remains is larger than noise or correlated."""
-        return (model.criterion - other.criterion) / other.deflation
+        """Evidence for ``other``: fall of the criterion, divided where what remains is larger than noise or correlated.
+
+        Where dry friction is in either, none has ties tighter than those up to which a fit with dry friction is sure to arrive.
+        """
+        most = SHARP if self.slides(model, other) else TIGHTEST
+        fall = model.criterion_at(min(model.tie, most)) - other.criterion_at(min(other.tie, most))
+        return fall / other.deflation
+
+    def best(self, model: FittedModel, others: Iterable[FittedModel]) -> FittedModel | None:
+        """The likeliest of some models beside the present one, each compared with the best before it."""
+        found: FittedModel | None = None
+        for other in others:
+            if found is None:
+                found = other
+                continue
+            close = abs(self.evidence(found, other)) < SCATTER < self.evidence(model, other) + 2.0 * SCATTER
+            if close and self.slides(found, other):
+                # Corners of dry friction scatter where fits end: each is begun once more from where the other one has ended.
+                other = self.fitter.fit_model(self.fitter.effects(other), found)
+                found = self.fitter.fit_model(self.fitter.effects(found), other)
+            if self.evidence(found, other) > 0.0:
+                found = other
+        return found
+
+    def slides(self, *models: FittedModel) -> bool:
+        """Whether dry friction is in any of some models."""
+        return any(self.fitter.laws[n].slides for model in models for n in model.names)
 
     def with_one_more(self, model: FittedModel) -> list[FittedModel]:
-        """The model with each of the most promising absent laws, where that leaves nothing or takes a clear share of the rest.
-
-        What takes little and leaves much stands in for something else.
-        """
-        found = [add(self.bench, model, c) for c in self._promising(self.screened(model))]
-        return [m for m in found if m.tied or model.criterion - m.criterion > CLEAR_SHARE * model.rest]
+        """The model with each of the most promising absent laws."""
+        return self._with_each(model, self.screened(model)) if len(model.names) < MOST_LAWS else []
 
     def with_one_fewer(self, model: FittedModel) -> list[FittedModel]:
         """The model without each of its laws, and with the simpler ones that they contain in their place."""
-        simpler = [other for name in sorted(model.names) for other in contained_instead(self.bench, model, name)]
-        return simpler + [drop(self.bench, model, name) for name in sorted(model.names)]
+        simpler = [other for name in sorted(model.names) for other in simpler_instead(self.fitter, model, name)]
+        return simpler + [drop(self.fitter, model, name) for name in sorted(model.names)]
 
     def with_another(self, model: FittedModel) -> list[FittedModel]:
         """The model with each of its laws replaced by the most promising others."""
         found = []
         for name in sorted(model.names):
-            without = drop(self.bench, model, name)
-            others = [c for c in self.screened(without) if c.name != name]
-            found += [add(self.bench, without, c) for c in self._promising(others)]
-        return found
+            without = drop(self.fitter, model, name)
+            # Where nothing is left, a law is not replaced by its like.
+            alike = {self._family(name)} if leaves_noise(model) else set()
+            found += self._with_each(
+                without, [c for c in self.screened(without) if self._family(c.name) not in alike or c.name == name]
+            )
+        return [m for m in found if m.names != model.names]
+
+    def _with_each(self, model: FittedModel, candidates: list[Candidate]) -> list[FittedModel]:
+        """The model with each of the most promising candidates in turn, and with all that were fitted before.
+
+        One that promises clearly less than one that leaves nothing is not fitted.
+        """
+        known = [m for c in candidates if (m := added(self.fitter, model, c)) is not None]
+        found: list[FittedModel] = []
+        enough = 0.0
+        for candidate in self._promising(model, candidates):
+            if net_gain(candidate, self.fitter) < CLOSE * enough:
+                break
+            found.append(add(self.fitter, model, candidate))
+            if leaves_noise(found[-1]) and self.evidence(model, found[-1]) > self.demand:
+                enough = max(enough, net_gain(candidate, self.fitter))
+        return known + found
 
     def screened(self, model: FittedModel) -> list[Candidate]:
         """`screen`, once for each fit."""
         key = model.names, model.criterion
         if key not in self._screened:
-            self._screened[key] = screen(self.bench, model)
+            self._screened[key] = screen(self.fitter, model)
         return self._screened[key]
 
     def as_likely(self, model: FittedModel) -> dict[tuple[str, ...], FittedModel]:
         """Other models that the record cannot tell from the one kept, by their laws; none where that leaves something."""
-        if not model.tied:
+        if not leaves_noise(model):
             return {}
-        others = [m for m in self.bench.fitted.values() if m.names != model.names and m.tied]
+        others = [m for m in self.fitter.fitted.values() if m.names != model.names and leaves_noise(m)]
         return {tuple(sorted(m.names)): m for m in others if self.evidence(model, m) > -self.demand}
 
-    def _promising(self, candidates: Iterable[Candidate]) -> list[Candidate]:
-        worths = [(worth(c, self.bench), c) for c in candidates]
-        best = max((w for w, _ in worths), default=0.0)
-        return [c for w, c in worths if w > max(self.demand, PROMISING * best)][:MOST_FITTED]
+    def _promising(self, model: FittedModel, candidates: list[Candidate]) -> list[Candidate]:
+        """Candidates not fitted yet that promise a share of what the best does; what has not kept its promise is left out."""
+        known = {c.name: added(self.fitter, model, c) for c in candidates}
+        asked = [c for c in candidates if (m := known[c.name]) is None or self.evidence(model, m) > self.demand]
+        least = max(self.demand, PROMISING * max((net_gain(c, self.fitter) for c in asked), default=0.0))
+        new = [c for c in asked if known[c.name] is None and net_gain(c, self.fitter) >= least]
+        # Of laws that records often cannot tell apart the most promising goes first.
+        first = {self._family(c.name): c for c in reversed(new)}
+        return [c for c in new if first[self._family(c.name)] is c][:MOST_FITTED]
+
+    def _family(self, name: str) -> str:
+        return self.fitter.laws[name].family or name
 
     def _step(self, model: FittedModel, found: FittedModel) -> None:
-        ranking = tuple(self._screened.get((model.names, model.criterion), ()))
-        fitted = {n: self.bench.fitted.get(model.names | {n}) for n in (c.name for c in ranking)}
-        tried = {n: m for n, m in fitted.items() if m is not None}
-        evidence = {n: self.evidence(model, m) for n, m in tried.items()}
-        refits = {n: (model.inside, m.inside) for n, m in tried.items()}
-        last = self.path[-1]
-        self.path[-1] = Step(last.trial, last.added, last.dropped, ranking, evidence, refits)
+        self._note_ranking()
         new = sorted(found.names - model.names)
         gone = tuple(sorted(model.names - found.names))
         self.progress(f"{' + '.join(sorted(found.names)) or 'the joint alone'} explains more", 0.5)
-        self.path.append(Step(found, new[0] if new else None, gone, ()))
+        self.path.append(SearchStep(found, new[0] if new else None, gone, ()))
+
+    def _note_ranking(self) -> None:
+        """Write into the last step what its model was found to lack, and what the fits of that said."""
+        last = self.path[-1]
+        model = last.model
+        ranking = tuple(self._screened.get((model.names, model.criterion), ()))
+        fitted = {n: self.fitter.fitted.get(model.names | {n}) for n in (c.name for c in ranking)}
+        tried = {n: m for n, m in fitted.items() if m is not None}
+        evidence = {n: self.evidence(model, m) for n, m in tried.items()}
+        refits = {n: share_of_rest(model, model.rest - m.rest) for n, m in tried.items()}
+        self.path[-1] = SearchStep(model, last.added, last.dropped, ranking, evidence, refits)

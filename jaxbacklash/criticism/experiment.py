@@ -20,7 +20,8 @@ from ..fitting.setup import first_guess
 from ..records import Record
 from ..simulation import measured_base, simulate
 from ..system import System
-from .workbench import Trial, Workbench, pruned
+from .fitted_model import FittedModel
+from .model_builder import ModelBuilder
 
 SECONDS = 4.0
 """Length of the experiment."""
@@ -79,39 +80,39 @@ class Experiment:
         )
 
 
-def separate(bench: Workbench, kept: Trial, rival: Trial, *, translational: bool = False) -> Experiment | None:
+def separate(builder: ModelBuilder, kept: FittedModel, rival: FittedModel, *, translational: bool = False) -> Experiment | None:
     """Look for the sine that separates two fitted models; None where nothing drives the record.
 
     Parameters
     ----------
-    bench : the record's workbench, whose compiled programs serve again
+    builder : of the record; its compiled programs serve again
     kept, rival : two models fitted to the record
     translational : units of a translating mass
     """
-    if bench.record.kind not in ("base_motion", "force"):
+    if builder.record.kind not in ("base_motion", "force"):
         return None
-    model = pruned(kept)
+    model = kept.pruned
     tried = []
-    for amplitude, frequency in within_reach(bench.record):
+    for amplitude, frequency in within_reach(builder.record):
         try:
-            twin = measured_twin(model, bench, amplitude, frequency)
+            twin = measured_twin(model, builder, amplitude, frequency)
         except BadInput:  # such a sine moves nothing
             continue
-        stage = Workbench(twin, bench.base, bench.base_free, bench.window, beside=bench.record)
-        stage.take_laws(bench.laws)
-        missed = [error(stage, bench, trial) for trial in (kept, rival)]
+        twins = ModelBuilder(twin, builder.base, builder.base_free, builder.window, beside=builder.record)
+        twins.take_laws(builder.laws)
+        missed = [error(twins, builder, one) for one in (kept, rival)]
         tried.append(Sine(amplitude, frequency, missed[1] / missed[0]))
     if not tried:
         return None
-    drive = bench.record.input_name or ""
+    drive = builder.record.input_name or ""
     unit = {"x": ("rad", "m"), "F": ("N m", "N")}[drive][translational]
     return Experiment(tuple(sorted(kept.names)), tuple(sorted(rival.names)), drive, unit, twin.samples, tuple(tried))
 
 
-def error(stage: Workbench, bench: Workbench, trial: Trial) -> float:
-    """How far a model of one workbench misses the record of another, its parameters frozen, in units of the noise."""
-    problem, _ = stage.problem(bench.effects(trial), trial.system)
-    return score(problem, first_guess(problem), stage.layout, group=stage.group)[0][0].rms
+def error(twins: ModelBuilder, builder: ModelBuilder, model: FittedModel) -> float:
+    """How far a model of one record misses another one, its parameters frozen, in units of the noise."""
+    problem, _ = twins.problem(builder.effects(model), model.system)
+    return score(problem, first_guess(problem), twins.layout, group=twins.group)[0][0].rms
 
 
 def within_reach(record: Record) -> Iterator[tuple[float, float]]:
@@ -134,9 +135,9 @@ def within_reach(record: Record) -> Iterator[tuple[float, float]]:
         yield amplitude / 3.0, float(frequency)
 
 
-def measured_twin(model: System, bench: Workbench, amplitude: float, frequency: float) -> Record:
+def measured_twin(model: System, builder: ModelBuilder, amplitude: float, frequency: float) -> Record:
     """What the rig would record of this model under a sine that grows from rest, with the noise of the record at hand."""
-    record, rng = bench.record, np.random.default_rng(SEED)
+    record, rng = builder.record, np.random.default_rng(SEED)
     forced = record.kind == "force"
     # The smoothed step from no drive to the full one lasts a tenth of the dwell.
     drive = SteppedSine(np.array([0.0, amplitude]), np.full(2, frequency), 10.0 * RAMP, as_force=forced)
@@ -146,7 +147,7 @@ def measured_twin(model: System, bench: Workbench, amplitude: float, frequency: 
     # A channel that lags shows the motion under an equally late drive, which has gone on meanwhile.
     seen = jax.vmap(drive.signal)(path.t + (0.0 if lag is None else lag))
     channels = {
-        "F" if forced else "x": np.asarray(seen) + bench.layout.input_noise[0] * rng.standard_normal(path.t.size),
-        record.observed_name: np.asarray(path.observed) + bench.layout.noise[0] * rng.standard_normal(path.t.size),
+        "F" if forced else "x": np.asarray(seen) + builder.layout.input_noise[0] * rng.standard_normal(path.t.size),
+        record.observed_name: np.asarray(path.observed) + builder.layout.noise[0] * rng.standard_normal(path.t.size),
     }
     return Record(np.asarray(path.t) - begin, channels, "the twin of an experiment", confirmed=frozenset({"t", "x", "y", "z"}))

@@ -1,6 +1,7 @@
 """Which laws of the catalogue a search may propose: those that can act in the joint, and that make sense for how its link moves.
 
-The one place where the catalogue of a search is made; `workbench` compiles a program with these laws, the search proposes them.
+The one place where the catalogue of a search is made; `model_builder` compiles a program with these laws, the search
+proposes them.
 """
 
 from __future__ import annotations

@@ -6,34 +6,37 @@ Between the search (`evidence_search`), which asks for models, and `jaxbacklash.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 
 import numpy as np
 
-from ..fitting.continuation import LOOSEST, TIGHTEST, Continued, continued, log_evidence, tied
+from ..fitting.continuation import LOOSEST, TIGHTEST, Continued, continued, in_one_run, log_evidence, sharpened, tied
 from ..fitting.levenberg import Levenberg, Minimum, minimise
-from ..fitting.problem import Problem, Unknowns
+from ..fitting.problem import Unknowns
 from ..fitting.search import freedom
 from ..fitting.setup import first_guess, read_through
+from ..fitting.stick_slip import sticks_and_slips
 from ..mechanics import AbstractEffect
 from ..parameters import values, with_values
 from ..records import Record
 from ..system import System
-from .evidence import measures_only
+from .evidence import correlation_length, leaves_noise, measures_only
 from .fitted_model import FittedModel
-from .workbench import Workbench, correlation_length
+from .model_builder import ModelBuilder
 
-SHOOTING = 0.025
-"""Length of a shooting window [s], eight samples at least: the unknown torque acts where windows join, so they are short beside
-the time in which a missing torque changes."""
 LOOSE = 1e-2
 """Weight of the ties with which a model is begun at most, whatever its neighbour ended with: it may lack what that one has."""
 
+MOST_STEPS = 1000
+"""Steps of a search over all its fits: then it ends with the best it has. Counted and not timed, so that every run ends alike."""
 MEASURING = 2.0
 """Minus twice the log prior odds of a fault of the measuring chain against a law of the joint."""
 
 
-class ModelFitter(Workbench):
+class ExhaustedError(Exception):
+    """A search has spent its budget; caught where the search began."""
+
+
+class ModelFitter(ModelBuilder):
     """Fits models of a record: sets of effects beside the joint.
 
     Parameters
@@ -48,38 +51,74 @@ class ModelFitter(Workbench):
     def __init__(
         self, record: Record, base: System, base_free: Iterable[str], window: float | None, beside: Record | None = None
     ) -> None:
-        super().__init__(record, base, base_free, window, beside, shooting=SHOOTING)
+        super().__init__(record, base, base_free, window, beside)
         self.fitted: dict[frozenset[str], FittedModel] = {}
+        self.before: dict[frozenset[str], FittedModel] = {}
+        self.fits, self.steps, self.budget = 0, 0, float(MOST_STEPS)
 
-    def problem(self, *args: object, **named: object) -> tuple[Problem, tuple[str, ...]]:
-        """As that of `Workbench`; a torque that is left out acts on the link, and jumps no state inside a law."""
-        problem, free = super().problem(*args, **named)  # type: ignore[arg-type]
-        return replace(problem, inner_tie=np.asarray(TIGHTEST)), free
+    def _count(self) -> None:
+        if self.steps >= self.budget:
+            raise ExhaustedError
+        self.fits += 1
 
-    def fit_model(self, effects: dict[str, AbstractEffect], near: FittedModel | None = None) -> FittedModel:
+    def quieter(self, factor: float) -> None:
+        """Take the noise for ``factor`` times what it was: every model is fitted anew, from where it was."""
+        super().quieter(factor)
+        self.before, self.fitted = self.fitted, {}
+
+    def fit_model(
+        self, effects: dict[str, AbstractEffect], near: FittedModel | None = None, joint: System | None = None
+    ) -> FittedModel:
         """The joint with these effects, fitted from their values; the better of this fit and of an earlier one is kept.
 
         Parameters
         ----------
         effects : by canonical name, at the values to start from
         near : a fitted model from whose joint, windows and ties to start, or looser ones; None starts from the record
+        joint : a system with the joint's values to start from instead
         """
-        problem, free = self.problem(effects, self.base if near is None else near.system)
+        if (was := self.before.get(frozenset(effects))) is not None:
+            effects, near, joint = self.effects(was), was, None
+        begin = joint if joint is not None else self.base if near is None else near.system
+        grips = [name for name in effects if name in self.outright]
+        if grips and self.gripped is not None and (near is None or not self.grips(near.names)):
+            # Far from anything that the joint alone could tell: the force loop says where to start.
+            begin = self.gripped
+            effects = {**effects, **{name: begin.effects[name] for name in grips}}
+        problem, free = self.problem(effects, begin)
+        if sticks_and_slips(problem.system):
+            self._count()
+            return self._keep(self._model(in_one_run(problem), frozenset(effects), free))
         unknowns = first_guess(problem)
         if near is not None:
             starts = read_through(self.windows, np.asarray(near.unknowns.starts[:2]), problem.system, near.system)
             unknowns = Unknowns(unknowns.theta, starts, near.unknowns.coefficients)
-        if any(effect.states for effect in effects.values()):
-            starts = self._followed(effects, problem.system, unknowns.starts)
+        if was is not None:
+            unknowns = Unknowns(unknowns.theta, was.unknowns.starts, was.unknowns.coefficients)
+        elif any(effect.states for effect in effects.values()):
+            starts = self.followed(effects, problem.system, unknowns.starts)
             unknowns = Unknowns(unknowns.theta, starts, unknowns.coefficients)
         self._count()
-        first = LOOSEST if near is None else min(near.tie, LOOSE)
+        hard = any(e.slides or e.states for e in effects.values())
+        richer = near is not None and near.names < frozenset(effects) and not hard
+        first = LOOSEST if near is None else near.tie if richer or was is not None else min(near.tie, LOOSE)
         found = continued(problem, unknowns, first=first, speeds=self.speeds(effects))
-        model = self._model(found, frozenset(effects), free)
+        return self._keep(self._model(found, frozenset(effects), free))
+
+    def _keep(self, model: FittedModel) -> FittedModel:
+        self.steps += sum(stop.steps for stop in model.stops)
         known = self.fitted.get(model.names)
         if known is None or model.criterion < known.criterion:
             self.fitted[model.names] = model
         return self.fitted[model.names]
+
+    def sharpened(self, model: FittedModel) -> FittedModel:
+        """A model that leaves out nothing led to one trajectory, where corners of dry friction have kept it from that."""
+        speeds = self.speeds(self.effects(model))
+        if model.tied or not speeds or model.found is None or not leaves_noise(model):
+            return model
+        self._count()
+        return self._keep(self._model(sharpened(model.found, speeds), model.names, model.free))
 
     def speeds(self, effects: dict[str, AbstractEffect]) -> dict[str, float]:
         """Root mean square speed [rad/s] at which each law of dry friction slides, by name."""
@@ -109,12 +148,13 @@ class ModelFitter(Workbench):
         inside = float(np.sqrt(np.sum(residual**2) / rows))
         cost = float(np.nan_to_num(stats["cost"], nan=np.inf))
         whole = found.tie >= TIGHTEST
-        # Free windows leave as much as their samples hold beyond what follows the noise.
-        misfit = np.sqrt(2.0 * cost / freedom(problem, tied=True)) if whole else inside
+        count = freedom(problem, tied=True)
+        rest = 2.0 * cost - count if whole else self._rest(found)
+        # What a model leaves out counts as if it were left as misfit by one trajectory.
+        misfit = np.sqrt(max(1.0 + rest / count, 0.0))
         return FittedModel(
             with_values(problem.system, dict(zip(values(problem.system), moved))), names, free, found.minimum.value, cost,
-            float(misfit), np.asarray(stats["schur"]), np.asarray(stats["pull"]), np.sum(problem.directions, axis=0), whole,
+            float(misfit), np.asarray(stats["schur"]), np.sum(problem.directions, axis=0), whole,
             found.converged, len(free) * float(np.log(rows)) + self._doubt(names), correlation_length(residual),
-            int(stats["steps"]), found.tie, found.log_evidence, inside, 0.0 if whole else self._rest(found), found.stops,
+            int(stats["steps"]), found.tie, found.log_evidence, inside, rest, count, found.stops, found,
         )  # fmt: skip
-

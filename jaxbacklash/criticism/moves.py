@@ -6,8 +6,8 @@ simpler one takes its place. `evidence_search` says which moves are tried; `mode
 
 from __future__ import annotations
 
-from ..mechanics import AbstractEffect
-from ..parameters import specs, values, with_values
+from ..mechanics import AbstractEffect, canonical_name
+from ..parameters import with_values
 from .candidates import Candidate, rubs
 from .fitted_model import FittedModel
 from .model_fitter import ModelFitter
@@ -25,7 +25,14 @@ def add(fitter: ModelFitter, model: FittedModel, candidate: Candidate) -> Fitted
     """The model with one more law, from its predicted values; fitted once for each set of laws."""
     gone = give_way(fitter, model, candidate.name)
     effects = {n: e for n, e in fitter.effects(model).items() if n not in gone} | {candidate.name: candidate.effect}
-    return _known(fitter, effects) or fitter.fit_model(effects, model)
+    # A law that remembers was tuned together with the model's own parameters.
+    joint = with_values(model.system, candidate.moved) if candidate.effect.states else model.system
+    return added(fitter, model, candidate) or fitter.fit_model(effects, model, joint)
+
+
+def added(fitter: ModelFitter, model: FittedModel, candidate: Candidate) -> FittedModel | None:
+    """The model with one more law, if that has been fitted."""
+    return fitter.fitted.get(model.names - give_way(fitter, model, candidate.name) | {candidate.name})
 
 
 def drop(fitter: ModelFitter, model: FittedModel, name: str) -> FittedModel:
@@ -34,23 +41,16 @@ def drop(fitter: ModelFitter, model: FittedModel, name: str) -> FittedModel:
     return _known(fitter, effects) or fitter.fit_model(effects, model)
 
 
-def contained_instead(fitter: ModelFitter, model: FittedModel, name: str) -> list[FittedModel]:
-    """The model with each simpler law that one of its laws contains in that one's place, at the strength that one has."""
+def simpler_instead(fitter: ModelFitter, model: FittedModel, name: str) -> list[FittedModel]:
+    """The model with each simpler law that one of its laws contains or comes near to in that one's place, where it may act."""
     found = []
-    for simpler in fitter.contained(name):
-        if simpler in model.names:
-            continue
-        effects = fitter.effects(model)
-        effects[simpler] = _reduced(effects.pop(name), fitter.laws[simpler])
-        found.append(fitter.fit_model(effects, model))
+    for law in fitter.effects(model)[name].simpler():
+        simpler = canonical_name(type(law))
+        if simpler in fitter.laws and simpler not in model.names:
+            effects = {n: e for n, e in fitter.effects(model).items() if n != name} | {simpler: law}
+            found.append(_known(fitter, effects) or fitter.fit_model(effects, model))
     return found
 
 
 def _known(fitter: ModelFitter, effects: dict[str, AbstractEffect]) -> FittedModel | None:
     return fitter.fitted.get(frozenset(effects))
-
-
-def _reduced(effect: AbstractEffect, law: type[AbstractEffect]) -> AbstractEffect:
-    """The simpler law at the values that it shares with one that contains it."""
-    simple = law()
-    return with_values(simple, {n: v for n, v in values(effect).items() if n in specs(simple)})

@@ -19,13 +19,12 @@ from ..parameters import free_specs, specs, values
 from ..precision import require_double_precision
 from ..showing import Shown
 from ..system import System
-from .candidates import Candidate, rank
-from .evidence import gain
+from .candidates import Candidate, share_of_rest
+from .evidence import correlation_length, gain
 from .laws_for import laws_for
-from .search import Search
+from .model_fitter import ModelFitter
+from .screening import screen
 from .steps import Stage
-from .tried import WHOLE
-from .workbench import Workbench, correlation_length
 
 
 @dataclass(frozen=True)
@@ -133,27 +132,27 @@ def rank_effects(fit: Fit, *, window: float | None = None) -> Ranking:
     full = fit.system
     bare = System(full.inertia, full.contact, full.damper, {}, full.observed)
     own = tuple(name for name in fit.free if name.partition(".")[0] not in full.effects)
-    bench = Workbench(fit.records[0], bare, own, window)
-    bench.take_laws(laws_for(bare, translational=fit.translational))
-    search = Search(bench)
-    trial = search.settle(bench.fit(dict(full.effects), joint=full, patience=WHOLE))
-    ranking = {c.name: c for c in rank(bench, trial)}
-    evidence = {}
-    for name in () if bench.grips(trial.names) else bench.outright:
-        # Sensitivities at a link that floats say nothing of one that is held: it is really refitted.
-        after = search.add(trial, Candidate(name, bench.laws[name](), 0.0, trial.misfit, {}))
+    fitter = ModelFitter(fit.records[0], bare, own, window)
+    fitter.take_laws(laws_for(bare, translational=fit.translational))
+    model = fitter.fit_model(dict(full.effects))
+    floating = not fitter.grips(model.names)
+    ranking = {c.name: c for c in reversed(screen(fitter, model, barred=fitter.outright))}
+    evidence, refits = {}, {}
+    # Sensitivities at a link that floats say nothing of one that is held: friction that holds it is really fitted.
+    for name in fitter.outright if floating else ():
+        after = fitter.fit_model({**fitter.effects(model), name: fitter.laws[name]()}, model)
         if np.isfinite(after.cost):
-            predicted = trial.misfit * float(np.sqrt(after.cost / trial.cost))
-            fall = 2.0 * (trial.cost - after.cost)
-            moved = {n: v for n, v in after.value.items() if n in trial.free}
-            ranking[name] = Candidate(name, after.system.effects[name], fall, predicted, moved)
-            evidence[name] = gain(trial, after)
-    return judged(fit.score, trial.cost, tuple(ranking.values()), evidence)
+            fall = model.criterion - after.criterion
+            moved = {n: v for n, v in after.value.items() if n in model.free}
+            refits[name] = share_of_rest(model, model.rest - after.rest)
+            ranking[name] = Candidate(name, after.system.effects[name], fall, refits[name], moved)
+            evidence[name] = gain(model, after)
+    return judged(fit.score, tuple(ranking.values()), evidence, refits)
 
 
 def of_stage(stage: Stage, following: Stage | None = None) -> Ranking:
     """The ranking at a stage of the loop; ``following`` is the stage that came of it, None for the last."""
-    found = judged(stage.fit.score, stage.fit.cost, stage.ranking, stage.evidence, stage.refits)
+    found = judged(stage.fit.score, stage.ranking, stage.evidence, stage.refits)
     chosen = None if following is None else following.added
     if chosen is None or following is None:
         return found
@@ -175,49 +174,37 @@ def of_stage(stage: Stage, following: Stage | None = None) -> Ranking:
 
 
 def judged(
-    score: Score, cost: float, ranking: Sequence[Candidate], evidence: Mapping[str, float] | None = None,
-    refits: Mapping[str, tuple[float, float]] | None = None,
+    score: Score, ranking: Sequence[Candidate], evidence: Mapping[str, float] | None = None,
+    refits: Mapping[str, float] | None = None,
 ) -> Ranking:  # fmt: skip
     """Candidates in units a person knows.
 
     Parameters
     ----------
     score : of the model as it is
-    cost : half the sum of squares that the candidates' gains refer to
-    ranking : from `candidates.rank`
-    evidence : of those that were really refitted, by name
-    refits : misfits of short windows before and after, of those that were really refitted, by name
+    ranking : from `screening.screen`
+    evidence : of those that were really fitted, by name
+    refits : of those, by name, the share of what the model leaves that each took away
     """
     evidence, refits = evidence or {}, refits or {}
-    now, rows = correlation(score), score.residual.size
-    whole = max(2.0 * cost, 1e-300)
+    sample = np.log(score.residual.size)
     entries = []
-    for c in ranking:
-        left = max(whole - c.gain, 0.0) / whole
-        before = c.predicted / np.sqrt(left) if left > 0.0 else 1.0
-        share = _excess_kept(before, c.predicted)
-        spread = max(1.0, c.predicted**2) * (1.0 + (now - 1.0) * share)
-        predicted = (c.gain - c.parameters * np.log(rows)) / spread
+    best = {c.name: c for c in sorted(ranking, key=lambda c: c.gain)}  # one law may be there at two shapes
+    for c in best.values():
         refitted = c.name in evidence
         why = "refitted" if refitted else "predicted from sensitivities, not refitted"
         if not refitted and c.gain <= 0.0:
             why = "its strength would have to leave the range that physics allows"
-        told = float(evidence.get(c.name, predicted))
-        known = _error(score.rms, *refits[c.name]) if c.name in refits else float("nan")
-        error = _error(score.rms, before, c.predicted) if left > 0.0 else 0.0
-        entries.append(Ranked(c.name, c.effect, error, told, refitted, why, dict(c.moved), known))
+        told = float(evidence.get(c.name, c.gain - c.parameters * sample))
+        known = rms_without(score.rms, refits[c.name]) if c.name in refits else float("nan")
+        predicted = rms_without(score.rms, c.share)
+        entries.append(Ranked(c.name, c.effect, predicted, told, refitted, why, dict(c.moved), known))
     return Ranking(tuple(sorted(entries, key=lambda e: -e.evidence)), score.rms)
 
 
-def _excess_kept(before: float, after: float) -> float:
-    """Share of a misfit's excess over noise that is left of it; all where there is hardly any."""
-    return float(np.clip((after**2 - 1.0) / (before**2 - 1.0), 0.0, 1.0)) if before**2 > 1.05 else 1.0
-
-
-def _error(rms: float, before: float, after: float) -> float:
-    """The quoted error once the misfit of short windows has fallen: the same share of its excess over noise is removed."""
-    kept = 1.0 + _excess_kept(before, after) * (rms**2 - 1.0)
-    return float(np.sqrt(kept)) if before**2 > 1.05 else rms * after / before
+def rms_without(rms: float, share: float) -> float:
+    """The error over noise once a share (0 to 1) of its excess over noise is removed."""
+    return float(np.sqrt(1.0 + (1.0 - share) * (rms**2 - 1.0)))
 
 
 def correlation(score: Score) -> float:

@@ -21,30 +21,26 @@ from ..fitting.left_over import predict, why_open
 from ..fitting.problem import Problem, Unknowns
 from ..fitting.result import Fit
 from ..fitting.score import Score
-from ..fitting.search import TIES, inverse_information, silent
+from ..fitting.search import ADEQUATE, inverse_information, silent
 from ..fitting.setup import base_system, free_names
 from ..fitting.size import check_size
 from ..fitting.stick_slip import correlation
-from ..fitting.windows import Windows
 from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..records.force import tell_way
 from ..system import System
-from .bounded import bounded
-from .either import either
 from .evidence_search import EvidenceSearch
 from .experiment import separate
-from .foresight import Foresight
+from .fitted_model import FittedModel
 from .laws_for import laws_for
+from .model_averaging import averaged
+from .model_builder import SHOOTING
 from .model_fitter import ModelFitter
 from .refinement import Refinement
-from .search import Search
 from .steps import Stage
 from .unnamed import unnamed
 from .verdict import judge_rest
-from .workbench import Trial, Workbench, adequate, pruned
 
-ENGINES = ("windows", "evidence")
 SEPARATED = 2
 """Alternatives for which an experiment is looked for."""
 
@@ -61,7 +57,6 @@ def refine(
     seed: int = 0,
     progress: Callable[[str, float], None] = silent,
     settled: Callable[[Fit], object] = lambda fit: None,
-    engine: str = "windows",
 ) -> Refinement:
     """Find the effects that a record needs beyond its base model.
 
@@ -74,13 +69,11 @@ def refine(
     system : a system to start from instead of an estimate from the data
     window : length of the windows whose error is quoted [s]; default 0.2 s, or 32 samples where that is longer
     translational : units of a translating mass
-    seed : changes nothing, and is taken as `fit` takes it: the search draws nothing at random. It begins at one estimate, and the
-        noise under which it tries a promise or an experiment out is the same in every run
+    seed : changes nothing, and is taken as `fit` takes it: the search draws nothing at random, and the noise under which it tries
+        an experiment out is the same in every run
     progress : told the stage in words and the share of the work done
-    settled : told a model that leaves but noise as soon as it is scored, while the search still looks for more, and at last the
-        model kept, unless that was the last it was told; that once more, if others do as well, with intervals that allow for them
-    engine : ``"windows"``, or ``"evidence"``, which fits each model together with the size of the torque it leaves out
-        (`criticism.evidence_search`) and is to replace the other
+    settled : told the model kept as soon as it is scored; that once more, if others do as well, with intervals that allow for
+        them
 
     Returns
     -------
@@ -115,38 +108,32 @@ def refine(
         system, names, start = base_system(record, model, inertia)
     else:
         names, model = free_names(system), "given"
-    if engine not in ENGINES:
-        raise BadInput(f"engine {engine!r}: wanted one of {', '.join(ENGINES)}")
-    bench = (ModelFitter if engine == "evidence" else Workbench)(record, system, names, window, beside=heldout)
-    bench.take_laws(laws_for(system, translational=translational))
+    fitter = ModelFitter(record, system, names, window, beside=heldout)
+    fitter.take_laws(laws_for(system, translational=translational))
     per_inertia = inertia is None and record.kind not in ABSOLUTE and model != "given"
-    judged = _Judge(bench, heldout, model, per_inertia, translational, start, settled)
+    judged = _Judge(fitter, heldout, model, per_inertia, translational, start)
     clock["prepare"] = time.perf_counter()
-    search: Search | EvidenceSearch
-    if isinstance(bench, ModelFitter):
-        search = EvidenceSearch(bench, progress)
-        steps = bounded(search)
-    else:
-        with Foresight(bench) as ahead:
-            search = Search(bench, progress, ahead.member, judged.tell)
-            steps = bounded(search)
+    search = EvidenceSearch(fitter, progress)
+    steps = search.run()
     clock["search"] = time.perf_counter()
 
     progress("scoring predictions", 0.85)
-    last = judged.tell(steps[-1].trial)
-    told, last = last, either(last, steps[-1].trial, tuple(search.level.values()))
+    kept = steps[-1].model
+    told = judged(kept)
+    settled(told)
+    last = averaged(told, kept, tuple(search.level.values()))
     if last is not told:
         settled(last)
-    fits = [*(judged(s.trial) for s in steps[:-1]), last]
+    fits = [*(judged(s.model) for s in steps[:-1]), last]
     stages = tuple(Stage(s.added, s.dropped, fit, s.ranking, s.evidence, s.refits) for s, fit in zip(steps, fits))
     clock["score"] = time.perf_counter()
     others = tuple(sorted(search.level, key=lambda names: search.level[names].criterion))
-    verdict = judge_rest(steps[-1].trial, [s.fit for s in stages], unnamed(bench, steps[-1].trial))
+    verdict = judge_rest(kept, [s.fit for s in stages], unnamed(fitter, kept))
     verdict = replace(verdict, text=f"{verdict.text} {few_counts(last)}".rstrip())
     experiments = []
     for names in others[:SEPARATED]:
         progress(f"looking for an experiment that separates {' + '.join(names)}", 0.88)
-        experiments.append(separate(bench, steps[-1].trial, search.level[names], translational=translational))
+        experiments.append(separate(fitter, kept, search.level[names], translational=translational))
     clock["experiment"] = time.perf_counter()
     marks = list(clock.items())
     seconds = {name: at - before for (_, before), (name, at) in pairwise(marks)}
@@ -157,55 +144,48 @@ class _Judge:
     """Makes a `Fit`, with scores and intervals, of every model kept."""
 
     def __init__(
-        self, bench: Workbench, heldout: Record | None, model: str, per_inertia: bool, translational: bool, start: Start | None,
-        settled: Callable[[Fit], object],
-    ) -> None:  # fmt: skip
-        self.bench, self.heldout, self.model = bench, heldout, model
+        self, fitter: ModelFitter, heldout: Record | None, base: str, per_inertia: bool, translational: bool, start: Start | None
+    ) -> None:
+        self.fitter, self.heldout, self.base = fitter, heldout, base
         self.per_inertia, self.translational, self.start = per_inertia, translational, start
-        self.settled = settled
-        self.told: tuple[Trial, Windows, Fit] | None = None
 
-    def tell(self, trial: Trial) -> Fit:
-        """The fit of a model that is likely the last, told at once, or that is the last: told unless it was the last one told."""
-        # Windows that were cut or weighed anew make another fit of the same model.
-        if self.told is None or self.told[0] is not trial or self.told[1] is not self.bench.windows:
-            fit = self(trial)
-            self.told = trial, self.bench.windows, fit
-            self.settled(fit)
-        return self.told[2]
-
-    def __call__(self, trial: Trial) -> Fit:
-        bench = self.bench
-        problem, free = bench.problem(bench.effects(trial), trial.system)
-        still = Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
-        scored = (bench.scored(trial),)
+    def __call__(self, model: FittedModel) -> Fit:
+        fitter = self.fitter
+        problem, free = fitter.problem(fitter.effects(model), model.system)
+        still = Unknowns(np.zeros(problem.directions.shape[1]), model.unknowns.starts, model.unknowns.coefficients)
+        scored = (fitter.scored(model),)
         held = None if self.heldout is None else self._predict(problem)
         q = len(free)
-        scales = trial.scales[:q]
-        runs = bench.grips(trial.names) and not adequate(trial)
+        scales = model.scales[:q]
+        runs = fitter.grips(model.names) and model.misfit >= ADEQUATE
         left = scored[0].residual
         pieces = correlation(left, np.ones(left.size)) if runs else 1.0
-        excess = inflation(trial.misfit, scored[0].rms, tied=trial.tied, correlation=pieces)
-        covariance = excess * inverse_information(trial.schur[:q, :q]) * np.outer(scales, scales)
+        excess = inflation(model.misfit, scored[0].rms, tied=model.tied, correlation=pieces)
+        covariance = excess * inverse_information(model.information[:q, :q]) * np.outer(scales, scales)
         stderr = dict(zip(free, np.sqrt(np.maximum(np.diag(covariance), 0.0))))
-        plain = pruned(trial)
-        records = (bench.record,)
+        system = model.pruned
+        records = (fitter.record,)
         estimates = judge(
-            plain, free, stderr, records, per_inertia=self.per_inertia, translational=self.translational,
-            covariance=covariance, explained=explains(scored, plain),
+            system,
+            free,
+            stderr,
+            records,
+            per_inertia=self.per_inertia,
+            translational=self.translational,
+            covariance=covariance,
+            explained=explains(scored, system),
         )
-        joined = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1] if trial.tied else 0.0))
+        joined = eqx.tree_at(lambda p: p.tie, problem, np.asarray(model.tie if model.tied else 0.0))
+        noise = fitter.layout.noise
         return Fit(
-            plain, free, estimates, scored, held, records, bench.layout.noise, bench.layout.input_noise, covariance, 0, 0,
-            trial.tied, trial.cost, trial.steps, self.start, self.model, self.per_inertia, self.translational, {}, joined, still,
-            (why_open(bench.record, bench.layout.noise[0], scored[0]),), (bench.layout.noise[0] / bench.noise_factor,),
+            system, free, estimates, scored, held, records, noise, fitter.layout.input_noise, covariance, 0, 0, model.tied,
+            model.cost, model.steps, self.start, self.base, self.per_inertia, self.translational, {}, joined, still,
+            (why_open(fitter.record, noise[0], scored[0]),), (noise[0] / fitter.noise_factor,),
         )  # fmt: skip
 
     def _predict(self, problem: Problem) -> Score:
         assert self.heldout is not None
-        bench = self.bench
-        prepared = prepare(
-            bench.pace, [self.heldout], bench.window, intervals=bench.windows.intervals, shooting=bench.shooting
-        )
-        known = bench.noise_factor, bench.layout.noise[0]
+        fitter = self.fitter
+        prepared = prepare(fitter.pace, [self.heldout], fitter.window, intervals=fitter.windows.intervals, shooting=SHOOTING)
+        known = fitter.noise_factor, fitter.layout.noise[0]
         return predict(lambda windows: eqx.tree_at(lambda p: p.windows, problem, windows), prepared, self.heldout, known)[0]

@@ -1,12 +1,13 @@
 r"""Linear screening: what each absent law promises beside a fitted model, without fitting it.
 
-Two tests, both of a linear model, so that the whole catalogue costs less than one fit:
+Two tests, both of a linear model at the torque left out that the model was fitted with, so that the whole catalogue costs less
+than one fit:
 
-* the score test of laws that remember nothing, along the fitted trajectory and with the torque left out that the model was fitted
-  with: with the information S and the score g of all columns, windows marginalised, a law is predicted to lower twice the cost by
-  :math:`g^T S^{-1} g` more than the model's own parameters would (Rao 1948);
-* weak-form regression on the measured motion of laws that remember: they have no sensitivity at strength zero, so they are
-  followed along the measured motion and tuned there (`tuning`), and compared with the others by the same regression.
+* the score test of laws that remember nothing, along the fitted trajectory: with the information S and the score g of all
+  columns, windows marginalised, a law is predicted to lower twice the cost by :math:`g^T S^{-1} g` more than the model's own
+  parameters would (Rao 1948);
+* laws that remember have no sensitivity at strength zero. Their shapes are tuned by weak-form regression on the measured motion
+  (`tuning`), and what they bring is told by their torque along the fitted motion (`force_test`).
 
 `evidence_search` fits those that promise most.
 """
@@ -17,17 +18,16 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from ..mechanics import AbstractEffect
-from ..parameters import free_specs
-from .candidates import Candidate, score_test
+from ..mechanics import canonical_name
+from ..parameters import free_specs, values
+from ..system import System
+from .candidates import Candidate, score_test, share_of_rest
 from .fitted_model import FittedModel
+from .force_test import ForceTest
 from .model_fitter import ModelFitter
-from .quick_look import QuickLook, whitener
-from .tuning import Tuned, tune
+from .moves import give_way
+from .tuning import tune
 
-CLEARLY = 0.02
-"""Share of the best other law's gain in the weak form by which a law that remembers has to be ahead: that regression is biased by
-noise in the motion, and a law that remembers nothing is often the limit of one that does."""
 SEEN = 10.0
 """Fall of the weak form's sum of squares, in units of its rows' variance, from which on a law that remembers is tuned."""
 
@@ -44,15 +44,18 @@ def screen(fitter: ModelFitter, model: FittedModel, barred: Iterable[str] = ()) 
     Returns
     -------
     list of Candidate
-        ``gain`` is the predicted fall of minus twice the log evidence, deflated where the model's residual is no noise. Laws
-        that remember are there only where the weak form puts them ahead of all others.
+        ``gain`` is the predicted fall of minus twice the log evidence, deflated where the model's residual is no noise.
     """
     absent = [n for n in fitter.laws if n not in model.names and n not in set(barred)]
-    static = score_test(fitter, model, [n for n in absent if n in fitter.static], tie=model.tie, deflation=model.deflation)
-    return sorted([*static, *_remembering(fitter, model, absent, static)], key=lambda c: -worth(c, fitter))
+    if (outright := [n for n in fitter.outright if n in absent]) and not fitter.grips(model.names):
+        # A link that floats says nothing of one that is held: friction at the ground is fitted, whatever the others promise.
+        return [Candidate(n, fitter.laws[n](), np.inf, 1.0, {}) for n in outright]
+    static = score_test(fitter, model, [n for n in absent if n in fitter.static])
+    found = [*static, *_remembering(fitter, model, absent, static)]
+    return sorted(found, key=lambda c: -net_gain(c, fitter))
 
 
-def worth(candidate: Candidate, fitter: ModelFitter) -> float:
+def net_gain(candidate: Candidate, fitter: ModelFitter) -> float:
     """The predicted fall of the criterion by a candidate: its gain less ln N for each of its parameters."""
     return candidate.gain - candidate.parameters * float(np.log(fitter.record.samples))
 
@@ -60,42 +63,39 @@ def worth(candidate: Candidate, fitter: ModelFitter) -> float:
 def _remembering(
     fitter: ModelFitter, model: FittedModel, absent: Sequence[str], static: Sequence[Candidate]
 ) -> list[Candidate]:
-    look, system = fitter.quick, model.system
-    if look.blind:
-        return []
-    names = [n for n in absent if fitter.laws[n].states]
-    # What promises nothing at any of the shapes it is begun with is not tuned.
-    names = [n for n in names if look.evidence(system, model.free, fitter.laws[n].guesses(system, look.motion)) > SEEN]
-    if not names:
-        return []
-    tuned = {n: tune(look, system, model.free, fitter.laws[n].guesses(system, look.motion)) for n in names}
-    gains = weak_form_gains(look, model, tuned, [c.effect for c in static])
-    sample = float(np.log(fitter.record.samples))
-    against = [gain - c.parameters * sample for c, gain in zip(static, gains[len(names) :])]
-    least = max([0.0, *against]) * (1.0 + CLEARLY)
-    found = []
-    for name, gain in zip(names, gains):
-        if gain - len(free_specs(tuned[name].effect)) * sample > least:
-            found.append(Candidate(name, tuned[name].effect, gain, model.misfit, {}))
+    """Laws that remember, those left out that bring no more than a simpler law that they come near to.
+
+    Their shapes are tuned on the measured motion beside the model, without what would give way to them; what they bring is told
+    by their torque along the fitted motion, in the place of that.
+    """
+    form, found = fitter.weak_form, []
+    test: ForceTest | None = None
+    promised = {c.name: net_gain(c, fitter) for c in static}
+    for name in absent:
+        if form.blind or not fitter.laws[name].states:
+            continue
+        gone = give_way(fitter, model, name)
+        system, free = _without(model, gone)
+        shapes = fitter.laws[name].guesses(system, form.motion)
+        if form.evidence(system, free, shapes) <= SEEN:
+            continue  # what promises nothing at any of the shapes it is begun with is not tuned
+        test = test or ForceTest(fitter, model)
+        tuned = tune(form, system, free, shapes)
+        near = [n for law in tuned.effect.simpler() if (n := canonical_name(type(law))) in fitter.laws]
+        gain, effect = test.best([tuned.effect] if near else [*shapes, tuned.effect], [model.system.effects[n] for n in gone])
+        less = sum(len(free_specs(model.system.effects[n])) for n in gone) * float(np.log(fitter.record.samples))
+        moved = {n: v for n, v in values(tuned.system).items() if n in free}
+        candidate = Candidate(name, effect, gain / model.deflation + less, share_of_rest(model, gain), moved)
+        if net_gain(candidate, fitter) > max((promised[n] for n in near if n in promised), default=-np.inf):
+            found.append(candidate)
     return found
 
 
-def weak_form_gains(
-    look: QuickLook, model: FittedModel, tuned: dict[str, Tuned], others: Sequence[AbstractEffect]
-) -> list[float]:
-    """Fall of minus twice the log likelihood of the weak form by each tuned law, then by each of the ``others``.
-
-    All by one regression, whitened by what the best of the tuned laws leaves.
-    """
-    left, by = look.missing(model.system, model.free)
-    white = whitener(min((t.left for t in tuned.values()), key=lambda rest: float(rest @ rest)))
-    target, own = white(left), white(by)
-    rows = target.size
-
-    def rest(design: np.ndarray) -> float:
-        remaining = target - design @ np.linalg.lstsq(design, target, rcond=None)[0]
-        return rows * float(np.log(remaining @ remaining + 1e-300))
-
-    none = rest(own)
-    columns = [*(look.column(t.effect, t.system) for t in tuned.values()), *(look.column(e, model.system) for e in others)]
-    return [none - rest(np.column_stack([own, white(column)])) for column in columns]
+def _without(model: FittedModel, names: frozenset[str]) -> tuple[System, tuple[str, ...]]:
+    """The fitted system without some of its laws, and its free parameters."""
+    if not names:
+        return model.system, model.free
+    full = model.system
+    rest = {n: e for n, e in full.effects.items() if n not in names}
+    bare = System(full.inertia, full.contact, full.damper, {}, full.observed, full.smoothed).with_effects(*rest.values())
+    return bare, tuple(n for n in model.free if n.partition(".")[0] not in names)

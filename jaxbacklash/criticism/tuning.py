@@ -1,13 +1,12 @@
 """Shape and strength of a law with a memory, tuned on the measured motion before any simulation is fitted.
 
 How far friction gives before it slips, or how round its knee is, does not show at zero strength, so no score test can rank such a
-law. The weak-form regression of the quick look can: the law's state is followed along the measured motion, and its
+law. Weak-form regression can: the law's state is followed along the measured motion, and its
 parameters move until its torque explains what the model leaves, the joint's own parameters moving with them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,14 +16,12 @@ from ..mechanics import AbstractEffect
 from ..parameters import free_specs, ravel, specs, unravel, values, with_values
 from ..system import System
 from .along_motion import own_tangents
-from .quick_look import QuickLook, whitener
+from .weak_form import WeakForm, whitener
 
 ROUNDS, EVALUATIONS = 2, 8
 """Times the joint is moved, and evaluations of the law between."""
 LOST = 1e30
 """A torque of this size is that of a law that cannot be followed along the motion: its powers would overflow."""
-Rival = tuple[list[AbstractEffect], int]
-"""Effects whose torques, each at any strength, are to explain what is missing, and how many parameters that takes."""
 REACH = np.log(30.0)
 """Logarithm of the factor by which a positive parameter may move in one round."""
 
@@ -40,66 +37,26 @@ class Tuned:
     count: int
 
 
-def tune(look: QuickLook, system: System, free: tuple[str, ...], variants: list[AbstractEffect]) -> Tuned:
+def tune(form: WeakForm, system: System, free: tuple[str, ...], variants: list[AbstractEffect]) -> Tuned:
     """The likeliest of some variants of a law, tuned beside a model.
 
     Parameters
     ----------
-    look : the record
+    form : the record
     system, free : the model without the law, and the parameters in which it can still move
     variants : points to start from, each at any strength
     """
-    effect = sized(look, system, free, look.choose(system, free, variants)[0])
+    effect = sized(form, system, free, form.choose(system, free, variants)[0])
     left = np.zeros(0)
     for _ in range(ROUNDS):
-        effect, system, left = _round(look, system, free, effect)
+        effect, system, left = _round(form, system, free, effect)
     return Tuned(effect, system, left, len(free_specs(effect)))
 
 
-def lead(look: QuickLook, free: tuple[str, ...], tuned: Tuned, start: System, rivals: Sequence[Rival]) -> float:
-    """Evidence of the weak form for a tuned law against the best of its ``rivals``: fall of the information criterion.
-
-    Rivals are judged about the model the law was tuned from, ``start``, and about the one it was tuned to.
-    """
-    white = whitener(tuned.left)
-    own, rows = float(np.sum(white(tuned.left) ** 2)) + 1e-300, white(tuned.left).size
-    best = np.inf
-    for system in (start, tuned.system):
-        left, by = look.missing(system, free)
-        for effects, count in rivals:
-            design = white(np.column_stack([by, *(look.column(e, system) for e in effects)]))
-            target = white(left)
-            rest = target - design @ np.linalg.lstsq(design, target, rcond=None)[0]
-            fall = rows * float(np.log((np.sum(rest**2) + 1e-300) / own)) + (count - tuned.count) * float(np.log(rows))
-            best = min(best, fall)
-    return best
-
-
-def told(look: QuickLook, free: tuple[str, ...], law: AbstractEffect, system: System, rival: AbstractEffect) -> float:
-    """What the weak form would say for a law against a rival if the law were the truth, 0 where it is blind.
-
-    The sum of squares of the law's torque that neither the rival's nor a model's own parameters take up, in units of the
-    variance of what the rival leaves.
-    """
-    left, by = look.missing(system, free)
-    others = np.column_stack([by, look.column(rival, system)])
-    white = whitener(left - others @ np.linalg.lstsq(others, left, rcond=None)[0])
-    basis = np.linalg.qr(white(others))[0]
-    left, own = (v - basis @ (basis.T @ v) for v in (white(left), white(look.column(law, system))))
-    return float(own @ own) * left.size / (float(left @ left) + 1e-300)
-
-
-def apart(effect: AbstractEffect, strengths: Iterable[str]) -> Rival:
-    """A law that is linear in its strengths as a rival: one effect for each of them, at the size of a typical change."""
-    names, described = list(strengths), specs(effect)
-    null = {n: float(described[n].null or 0.0) for n in names}
-    return [with_values(effect, {**null, n: null[n] + float(described[n].scale or 1.0)}) for n in names], len(names)
-
-
-def sized(look: QuickLook, system: System, free: tuple[str, ...], effect: AbstractEffect) -> AbstractEffect:
+def sized(form: WeakForm, system: System, free: tuple[str, ...], effect: AbstractEffect) -> AbstractEffect:
     """The law at the strength that the record asks for, its shape kept: all of its torques grow together."""
-    left, by = look.missing(system, free)
-    design = np.column_stack([by, look.column(effect, system)])
+    left, by = form.missing(system, free)
+    design = np.column_stack([by, form.column(effect, system)])
     white = whitener(left - design @ np.linalg.lstsq(design, left, rcond=None)[0])
     factor = float(np.linalg.lstsq(white(design), white(left), rcond=None)[0][-1])
     if not np.isfinite(factor) or factor <= 0.0:
@@ -113,22 +70,11 @@ def stronger(effect: AbstractEffect, factor: float) -> AbstractEffect:
     return with_values(effect, torques)
 
 
-def level(law: AbstractEffect) -> float:
-    """The largest torque that a law states [N m], 0 for a law that states none."""
-    found = values(law)
-    return max((abs(found[n]) for n, s in specs(law).items() if s.unit == "N m"), default=0.0)
-
-
-def at_level(guesses: Iterable[AbstractEffect], size: float) -> list[AbstractEffect]:
-    """The guesses of a law with ``size`` [N m] as their largest torque, without those that state none."""
-    return [stronger(guess, size / level(guess)) for guess in guesses if level(guess) > 0.0]
-
-
 def _round(
-    look: QuickLook, system: System, free: tuple[str, ...], effect: AbstractEffect
+    form: WeakForm, system: System, free: tuple[str, ...], effect: AbstractEffect
 ) -> tuple[AbstractEffect, System, np.ndarray]:
-    left, by = look.missing(system, free)
-    design = np.column_stack([by, look.column(effect, system)])
+    left, by = form.missing(system, free)
+    design = np.column_stack([by, form.column(effect, system)])
     white = whitener(left - design @ np.linalg.lstsq(design, left, rcond=None)[0])
     basis = np.linalg.qr(white(by))[0]
 
@@ -164,13 +110,13 @@ def _round(
             seeds = np.zeros((len(index), full.size))
             seeds[np.arange(len(index)), index] = chain
             # What cannot be followed explains nothing.
-            torque, columns = (np.where(np.abs(v) < LOST, v, 0.0) for v in own_tangents(law, system, seeds, look.motion))
-            seen[p.tobytes()] = project(look.average(torque)) - target, project(look.average(columns).T)
+            torque, columns = (np.where(np.abs(v) < LOST, v, 0.0) for v in own_tangents(law, system, seeds, form.motion))
+            seen[p.tobytes()] = project(form.average(torque)) - target, project(form.average(columns).T)
         return seen[p.tobytes()]
 
     found = least_squares(lambda p: both(p)[0], first, jac=lambda p: both(p)[1], bounds=bounds, max_nfev=EVALUATIONS)
     effect = at(found.x)[0]
-    rest = left - look.column(effect, system)
+    rest = left - form.column(effect, system)
     change = np.linalg.lstsq(white(by), white(rest), rcond=None)[0]
     return effect, _moved(system, free, change), rest - by @ change
 

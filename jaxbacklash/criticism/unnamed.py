@@ -2,7 +2,7 @@ r"""Does what a model leaves hang together in a way that no law of the catalogue
 
 A misfit over all samples hides what is small; along one direction it shows (as powers of what was fitted do in Ramsey's RESET,
 1969). Simple torques that the catalogue does not hold, products of the motion's coordinates and a rhythm of its own, are held
-against the model's own motion, free of noise: the quick look proposes, the score of the fitted trajectory decides.
+against the model's own motion, free of noise: the weak form proposes, the score of the fitted trajectory decides.
 """
 
 from __future__ import annotations
@@ -17,23 +17,24 @@ from ..fitting.levenberg import Levenberg, minimise
 from ..pointwise import along
 from ..system import System
 from .along_motion import Motion
-from .evidence import SURE, demanded, explained
-from .quick_look import QuickLook, whitener
-from .under_noise import answered, as_it_ended, blurred, delayed, model_record, panel_edges, parabola
-from .workbench import Trial, Workbench
+from .evidence import SURE, demanded, leaves_noise
+from .fitted_model import FittedModel
+from .model_builder import ModelBuilder
+from .perturbed import answered, as_it_ended, blurred, delayed, model_record, panel_edges, parabola
+from .weak_form import WeakForm, whitener
 
 LOOKED = 3
-"""Torques, the likeliest by the quick look, that are held against the trajectory."""
+"""Torques, the likeliest by the weak form, that are held against the trajectory."""
 BY_CHANCE = 8.0
-"""What the quick look shows of a torque by chance where nothing is missing, at most: less is not held against the trajectory."""
+"""What the weak form shows of a torque by chance where nothing is missing, at most: less is not held against the trajectory."""
 NOWHERE_NEAR = 0.3
 """Share of what it would have to bring under which a torque is not looked at more closely."""
 FURTHEST = 3.0
-"""Size, as a multiple of what the quick look says, up to which a torque is applied."""
+"""Size, as a multiple of what the weak form says, up to which a torque is applied."""
 ALIKE = 0.01
 """Share of a torque, squared, that the model cannot make up for by itself: with less it is no torque of its own."""
 SLOWEST, FINER, PASSED = 3, 4, 0.2
-"""Periods of a rhythm in a record at least, steps of frequency to a period more, and share of it that the look lets pass."""
+"""Periods of a rhythm in a record at least, steps of frequency to a period more, and share of it that the bumps let pass."""
 
 
 @dataclass(frozen=True)
@@ -60,31 +61,31 @@ class Glimpse:
         return 2.0 * float(np.log(self.tried))
 
 
-def unnamed(bench: Workbench, trial: Trial) -> Unnamed | None:
+def unnamed(builder: ModelBuilder, model: FittedModel) -> Unnamed | None:
     """The torque outside the catalogue that a model of one trajectory clearly asks for, the clearest; None where there is none.
 
     Of a model that leaves more than noise, and of a link that is not seen, nothing is told.
     """
-    if not trial.tied or bench.quick.blind or not explained(trial):
+    if not model.tied or builder.weak_form.blind or not leaves_noise(model):
         return None
-    problem, unknowns = as_it_ended(bench, trial)
+    problem, unknowns = as_it_ended(builder, model)
     ended = minimise(problem, unknowns, Levenberg(limit=1)).stats
     still = float(ended["cost"] - ended["promise"])
-    own = QuickLook(model_record(bench, ended["predicted"]))
-    applied = np.asarray(bench.windows.force)
-    edges = panel_edges(bench)
-    unit = 0.5 * max(1.0, trial.misfit**2) * trial.correlation
+    own = WeakForm(model_record(builder, ended["predicted"]))
+    applied = np.asarray(builder.windows.force)
+    edges = panel_edges(builder)
+    unit = 0.5 * max(1.0, model.misfit**2) * model.correlation
     found = []
-    likely = glimpses(bench, trial, own)
+    likely = glimpses(builder, model, own)
     # What a sensor explains as well that was read along a line between two samples, as one that lags may be, is no torque.
-    read = 0.5 * blurred(bench, trial) / unit if likely and delayed(bench, trial) else 0.0
+    read = 0.5 * blurred(builder, model) / unit if likely and delayed(builder, model) else 0.0
     for seen in likely:
         torque = np.interp(edges, own.motion.t, seen.torque)
 
         def rise(share: float, torque: np.ndarray = torque) -> float:
             return answered(eqx.tree_at(lambda p: p.windows.force, problem, applied + share * torque), unknowns)[0] - still
 
-        bar = read + seen.chance + SURE * demanded(bench)
+        bar = read + seen.chance + SURE * demanded(builder)
         fall = best_fall(rise, bar * unit) / unit
         if fall > bar:
             found.append(Unnamed(seen.words, fall))
@@ -104,18 +105,18 @@ def best_fall(rise: Callable[[float], float], bar: float = 0.0) -> float:
     return max(seen, -rise(float(np.clip(best, -FURTHEST, FURTHEST))))
 
 
-def glimpses(bench: Workbench, trial: Trial, own: QuickLook) -> list[Glimpse]:
-    """The likeliest torques outside the catalogue beside a trial, whose own motion looks like ``own``.
+def glimpses(builder: ModelBuilder, model: FittedModel, own: WeakForm) -> list[Glimpse]:
+    """The likeliest torques outside the catalogue beside a model, whose own motion looks like ``own``.
 
     What the model's parameters can do is taken off them, so that they bend its trajectory no more than they have to.
     """
-    left, by = bench.quick.missing(trial.system, trial.free)
-    left = left - own.missing(trial.system, trial.free)[0]
+    left, by = builder.weak_form.missing(model.system, model.free)
+    left = left - own.missing(model.system, model.free)[0]
     white = whitener(left - by @ np.linalg.lstsq(by, left, rcond=None)[0])
     seen, ways = white(left), white(by)
     rest = seen - ways @ np.linalg.lstsq(ways, seen, rcond=None)[0]
 
-    words, torques = zip(*products(trial.system, own.motion).items())
+    words, torques = zip(*products(model.system, own.motion).items())
     hertz, wave = rhythm(own, rest, white)
     rows = np.stack([*torques, wave])
     columns = white(own.average(rows).T)
@@ -125,7 +126,7 @@ def glimpses(bench: Workbench, trial: Trial, own: QuickLook) -> list[Glimpse]:
     power = np.where(power > ALIKE * whole, np.maximum(power, 1e-300), np.inf)
     sizes = columns.T @ rest / power
     evidence = sizes**2 * np.where(np.isfinite(power), power, 0.0) / max(float(np.mean(rest**2)), 1e-300)
-    rows = sizes[:, None] * (rows - made_up.T @ own.along(trial.system, trial.free)[1])
+    rows = sizes[:, None] * (rows - made_up.T @ own.along(model.system, model.free)[1])
     told, tried = [*words, f"a rhythm of its own of {hertz:.3g} Hz"], [*(len(words) for _ in words), rest.size]
     found = [Glimpse(*one) for one in zip(told, rows, evidence, tried)]
     likely = [g for g in found if g.evidence > max(BY_CHANCE, g.chance)]
@@ -163,14 +164,13 @@ def products(system: System, m: Motion) -> dict[str, np.ndarray]:
     }
 
 
-def rhythm(look: QuickLook, rest: np.ndarray, white: Callable[[np.ndarray], np.ndarray]) -> tuple[float, np.ndarray]:
+def rhythm(form: WeakForm, rest: np.ndarray, white: Callable[[np.ndarray], np.ndarray]) -> tuple[float, np.ndarray]:
     """The sine that is likeliest in what is left: its frequency [Hz], and its torque (N,) at the likeliest phase."""
     spectrum = np.abs(np.fft.rfft(rest, FINER * rest.size)) ** 2
-    hertz = np.fft.rfftfreq(FINER * rest.size, look.spacing)
-    slow = SLOWEST / (rest.size * look.spacing)
-    known = (hertz >= slow) & (look.passes(hertz) > PASSED)
+    hertz = np.fft.rfftfreq(FINER * rest.size, form.spacing)
+    slow = SLOWEST / (rest.size * form.spacing)
+    known = (hertz >= slow) & (form.passes(hertz) > PASSED)
     best = float(hertz[np.argmax(np.where(known, spectrum, -1.0))])
-    angle = 2.0 * np.pi * best * (look.motion.t - look.motion.t[0])
+    angle = 2.0 * np.pi * best * (form.motion.t - form.motion.t[0])
     pair = np.stack([np.cos(angle), np.sin(angle)])
-    return best, np.linalg.lstsq(white(look.average(pair).T), rest, rcond=None)[0] @ pair
-
+    return best, np.linalg.lstsq(white(form.average(pair).T), rest, rcond=None)[0] @ pair

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from ..fitting import Fit, error_in_words
 from .evidence import at_a_limit, most_of_noise
+from .fitted_model import FittedModel
 from .unnamed import Unnamed
-from .workbench import Trial
 
 LITTLE_MORE = 1.1
 """A misfit below this looks like noise, so that a verdict against it says what noise would leave."""
@@ -30,7 +30,7 @@ class Verdict:
         return "complete" if self.complete else "incomplete"
 
 
-def judge_rest(final: Trial, fits: list[Fit], beyond: Unnamed | None = None) -> Verdict:
+def judge_rest(final: FittedModel, fits: list[Fit], beyond: Unnamed | None = None) -> Verdict:
     """Whether the last model leaves nothing but noise; ``beyond`` is a torque outside the catalogue that it clearly asks for."""
     first, last = fits[0], fits[-1]
     most = most_of_noise(final)
@@ -56,7 +56,7 @@ def judge_rest(final: Trial, fits: list[Fit], beyond: Unnamed | None = None) -> 
     return Verdict(False, f"{text} {against}".rstrip(), here)
 
 
-def _what_explains(final: Trial, first: Fit, last: Fit, against: str) -> str:
+def _what_explains(final: FittedModel, first: Fit, last: Fit, against: str) -> str:
     """What is said of a model that leaves but noise on the record, and what a held-out one has ``against`` it."""
     left = "what is left is noise"
     if last.score.rms > LITTLE_MORE:

@@ -13,19 +13,11 @@ import jax.numpy as jnp
 
 from ..mechanics import AbstractEffect, Instant
 from ..parameters import Scalar, param
+from .friction import CoulombGround, CoulombJoint, Stribeck
 from .scales import natural_frequency, presliding, sliding_speeds
 
 FASTEST = 1000.0
 """Largest rate [1/s] at which a state follows. Met only in fast sliding, where the state has settled already."""
-
-
-def slope_and_level(effect: AbstractEffect) -> list[tuple[float, float]]:
-    """Torque per angle at a reversal [N m/rad] and sliding torque [N m] of a law of this file; nothing of another one."""
-    if isinstance(effect, Lugre):
-        return [(float(effect.sigma0), float(effect.Fc))]
-    if isinstance(effect, Dahl | BoucWen):
-        return [(float(effect.sigma), float(effect.Fc))]
-    return []
 
 
 def _flow(speed: Scalar, sigma: Scalar, level: Scalar) -> Scalar:
@@ -49,9 +41,8 @@ class Dahl(AbstractEffect):
     def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
         return [cls(Fc=1.0, sigma=1.0 / distance) for distance in presliding(system)]
 
-    @classmethod
-    def in_place_of(cls, other: AbstractEffect, motion: Any | None = None) -> list[AbstractEffect]:
-        return [cls(Fc=level, sigma=slope) for slope, level in slope_and_level(other)]
+    def simpler(self) -> list[AbstractEffect]:
+        return [CoulombJoint(self.Fc), CoulombGround(self.Fc)]
 
     def torque(self, now: Instant) -> Scalar:
         return -self.Fc * now.state[0]
@@ -101,13 +92,9 @@ class Lugre(AbstractEffect):
         relaxing, speed = 0.06 / natural_frequency(system), sliding_speeds(motion)[0]
         return [cls(sigma0=1.0 / d, sigma1=relaxing / d, Fc=1.0, Fs=1.5, vs=speed) for d in presliding(system)]
 
-    @classmethod
-    def in_place_of(cls, other: AbstractEffect, motion: Any | None = None) -> list[AbstractEffect]:
-        return [
-            cls(sigma0=slope, sigma1=1e-3 * slope, Fc=level, Fs=1.2 * level, vs=speed)
-            for slope, level in slope_and_level(other)
-            for speed in sliding_speeds(motion)
-        ]
+    def simpler(self) -> list[AbstractEffect]:
+        at_rest = jnp.where(self.Fs > 0.0, self.Fs, self.Fc)
+        return [CoulombJoint(self.Fc), CoulombGround(self.Fc), Dahl(self.Fc, self.sigma0), Stribeck(self.Fc, at_rest, self.vs)]
 
     def torque(self, now: Instant) -> Scalar:
         # The state is sigma0 s / Fc.
@@ -144,9 +131,8 @@ class BoucWen(AbstractEffect):
     def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
         return [cls(1.0 / distance, 1.0, 1.5, 0.75) for distance in presliding(system)]
 
-    @classmethod
-    def in_place_of(cls, other: AbstractEffect, motion: Any | None = None) -> list[AbstractEffect]:
-        return [cls(slope, level, power, 0.75) for slope, level in slope_and_level(other) for power in (1.5, 1.1)]
+    def simpler(self) -> list[AbstractEffect]:
+        return [CoulombJoint(self.Fc), CoulombGround(self.Fc), Dahl(self.Fc, self.sigma)]
 
     def torque(self, now: Instant) -> Scalar:
         return -self.Fc * now.state[0]

@@ -11,7 +11,7 @@ from ..mechanics import AbstractEffect, Instant
 from ..parameters import Scalar, param
 from .scales import natural_frequency
 
-LOWEST, HIGHEST, STEPS = 1.1, 7.0, 6
+LOWEST, HIGHEST, STEPS = 1.1, 7.0, 12
 """Frequencies at which something behind the link may swing, in units of the link's own in contact: below that it swings with the
 joint as one, far above it is one with the link."""
 
@@ -33,21 +33,11 @@ class FlexibleLink(AbstractEffect):
     def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
         # A tenth of the link's inertia on springs of a ladder of frequencies: the frequency is not seen at null.
         small, own = 0.1 * float(system.inertia), natural_frequency(system)
-        return [cls(small, small * w * w, 0.02 * small * w) for w in own * np.geomspace(LOWEST, HIGHEST, STEPS)]
-
-    @classmethod
-    def ringing(cls, system: Any, omega: float, size: float = 0.0) -> FlexibleLink:
-        # Two inertias on one spring swing faster than the smaller one alone. More damped than most: heard in a wider band.
-        own = omega / np.sqrt(1.0 + 0.1 * size)
-        link = 0.1 * float(system.inertia)
-        return cls(link, link * own**2, 0.1 * link * own).scaled(size or 1.0)
+        return [cls(small, small * w * w, 0.1 * small * w) for w in own * np.geomspace(LOWEST, HIGHEST, STEPS)]
 
     def scaled(self, factor: float) -> FlexibleLink:
         # A smaller inertia that swings at the same frequency, as well damped.
         return FlexibleLink(factor * self.J2, factor * self.k2, factor * self.c2)
-
-    def loading(self, inertia: float) -> float:
-        return 1.0 + float(self.J2) / inertia
 
     def torque(self, now: Instant) -> Scalar:
         y2, dy2 = now.state

@@ -2,7 +2,7 @@ r"""A record's equation of motion averaged under smooth bumps: what every regres
 
 Integration by parts moves the derivatives to the bump, so that no sample is differenced:
 :math:`\int \varphi\,\ddot y = \int \ddot\varphi\,y`. The start of a fit (`jaxbacklash.fitting.equation_error`) and the look at
-which laws are absent (`jaxbacklash.criticism.quick_look`) both regress on these rows.
+which laws are absent (`jaxbacklash.criticism.weak_form`) both regress on these rows.
 """
 
 from __future__ import annotations

@@ -22,10 +22,14 @@ from dataclasses import dataclass
 import equinox as eqx
 import numpy as np
 
+from ..mechanics import AbstractEffect
+from ..parameters import specs, values
+from .friction_homotopy import with_friction_widths
 from .levenberg import Levenberg, Minimum, minimise
 from .problem import Problem, Unknowns
+from .search import freedom
 from .shooting import tie_weights
-from .softened import softened
+from .stick_slip import search_stick_slip
 
 LOOSEST, TIGHTEST = 1e-4, 100.0
 """Weights of the ties between windows from which on to which a fit goes: the first lets a window's end miss the next one's start
@@ -38,9 +42,18 @@ WITHIN_CHANCE = 1.92
 """Half the 95 % point of chi-square with one degree of freedom: q = 0 is kept where the likeliest q gains no more."""
 SOFT, SHARP = 0.03, 0.1
 """Range in which dry friction turns its sign where ties are as loose as `SOFT_AT`, as a share of the speed at which it slides;
-and the weight of the ties from which on it is sharp."""
+and the weight of the ties from which on it is sharp; a fit with dry friction ends there, since tighter ties make corners."""
 SOFT_AT = 1e-3
 """Weight of the ties up to which dry friction is as soft as `SOFT`; it narrows as they grow."""
+STABLE = 1.5
+"""Product of step and rate, of the fastest decay that softened friction may make, up to which a Runge-Kutta step of fourth order
+is stable (2.8), less the slope 1.5 of the softened sign and a margin for friction that grows during the fit."""
+WAYS: tuple[tuple[float, ...], ...] = ((), (0.003, 0.001), (0.03, 0.01, 0.003, 0.001))
+"""Ranges over which softened friction turns, one after the other, as shares of the speed at which it slides: three ways."""
+NEAR_ENOUGH = 2.5
+"""How many times the noise a run along the smoothed input may miss by for the input to be let free within its noise."""
+INNER = 1.0
+"""How many times as tightly as the link's motion the states of laws are tied that have no bound, up to `TIGHTEST`."""
 BETWEEN, LAST = 15, 40
 """Steps of a fit with ties looser than `SHARP`, and of one with those or tighter ones."""
 ROUGHLY, CLOSELY = 0.3, 1e-2
@@ -62,7 +75,8 @@ class Continued:
     """Where a fit by continuation ended.
 
     ``problem`` with the ties at the likeliest q; the ``minimum`` found there; its ``log_evidence``; ``stops``, the fits on the
-    way; ``converged`` whether the last one came to its end.
+    way; ``converged`` whether the last one came to its end; ``reached`` where each of those fits ended, by the weight of
+    its ties.
     """
 
     problem: Problem
@@ -70,6 +84,7 @@ class Continued:
     log_evidence: float
     stops: tuple[Stop, ...]
     converged: bool
+    reached: Mapping[float, Unknowns]
 
     @property
     def tie(self) -> float:
@@ -110,7 +125,66 @@ def continued(
     at = tied(problem, best)
     minimum = minimise(at, way.reached.get(best, start), Levenberg(limit=LAST, atol=CLOSELY))
     done = int(minimum.stats["steps"]) < LAST
-    return Continued(at, minimum, log_evidence(at, minimum), tuple(way.stops), done)
+    return Continued(at, minimum, log_evidence(at, minimum), tuple(way.stops), done, {**way.reached, best: minimum.value})
+
+
+def evidence_at(problem: Problem, reached: Mapping[float, Unknowns], tie: float) -> float:
+    """Log evidence of a model with ties of another weight than the likeliest: two models are compared with one and the same.
+
+    Parameters
+    ----------
+    problem : the model
+    reached : where earlier fits of it ended, by the weight of their ties; the nearest is begun from
+    tie : weight of the ties
+    """
+    nearest = min(reached, key=lambda other: abs(np.log(other / tie)))
+    at = tied(problem, tie)
+    return log_evidence(at, minimise(at, reached[nearest], Levenberg(limit=BETWEEN, atol=ROUGHLY)))
+
+
+def sharpened(found: Continued, speeds: Mapping[str, float]) -> Continued:
+    """A fit with dry friction led to one trajectory by way of softer friction, where the continuation has ended before.
+
+    With dry friction a misfit with tight ties has corners, at which searches stop. Friction that turns over a range of speed has
+    none, and what it ends with is begun from as the range narrows. The first trajectory that is as likely as the fit that was is
+    what comes back; else that fit.
+
+    Parameters
+    ----------
+    found : a fit whose windows are no trajectory though nothing seems to be left out
+    speeds : root mean square speed [rad/s] at which each law of dry friction slides, by name
+    """
+    from_here = found.reached[max(found.reached)]
+    stops = list(found.stops)
+    for shares in WAYS:
+        unknowns, loose = from_here, tied(found.problem, 1.0)
+        for share in shares:
+            unknowns = minimise(softer(loose, speeds, share), unknowns, Levenberg(limit=LAST, atol=ROUGHLY)).value
+        unknowns = minimise(loose, unknowns, Levenberg(limit=LAST, atol=ROUGHLY)).value
+        at = tied(found.problem, TIGHTEST)
+        minimum = minimise(at, unknowns, Levenberg(limit=LAST, atol=CLOSELY, damping=1e-9))
+        stops.append(Stop(TIGHTEST, log_evidence(at, minimum), int(minimum.stats["steps"])))
+        if stops[-1].log_evidence >= found.log_evidence - WITHIN_CHANCE:
+            reached = {**found.reached, TIGHTEST: minimum.value}
+            return Continued(at, minimum, stops[-1].log_evidence, tuple(stops), stops[-1].steps < LAST, reached)
+    return found
+
+
+def in_one_run(problem: Problem) -> Continued:
+    """Fit a link that dry friction holds and that is not seen: each trial is one run through the record, and nothing is left out.
+
+    Where friction holds the link, a window's start has no sensitivity to anything, so that windows of their own tell nothing.
+    """
+    at = tied(problem, TIGHTEST)
+    unknowns, seen, steps = search_stick_slip(problem, np.zeros(problem.directions.shape[1]), limit=LAST)
+    if float(seen["cost"]) < 0.5 * NEAR_ENOUGH**2 * freedom(problem, tied=True):
+        # Near the record the input may follow its own noise.
+        further = minimise(at, unknowns, Levenberg(limit=LAST, atol=CLOSELY, damping=1e-9))
+        unknowns = further.value if float(further.stats["cost"]) < float(seen["cost"]) else unknowns
+    minimum = minimise(at, unknowns, Levenberg(limit=1))
+    height = log_evidence(at, minimum)
+    minimum.stats["steps"] = np.asarray(steps)
+    return Continued(at, minimum, height, (Stop(TIGHTEST, height, steps),), steps < LAST, {TIGHTEST: unknowns})
 
 
 class _Way:
@@ -127,11 +201,13 @@ class _Way:
         factor = FINER
         if not self.rises(first, start):
             return
-        tie = first
-        while tie < TIGHTEST:
-            further = min(tie * factor, TIGHTEST)
+        tie, last = first, SHARP if self.speeds else TIGHTEST
+        while tie < last:
+            further = min(tie * factor, last)
             # Factors of ten end a little beside powers of ten.
-            further = TIGHTEST if further > 0.9 * TIGHTEST else further
+            further = last if further > 0.9 * last else further
+            if any(stop.tie >= 0.9 * further for stop in self.stops):
+                return  # the evidence has fallen there
             if self.rises(further, self.reached[tie]):
                 tie = further
             elif factor == FINER:
@@ -180,13 +256,31 @@ def log_evidence(problem: Problem, minimum: Minimum) -> float:
 
 
 def tied(problem: Problem, tie: float) -> Problem:
-    """The same problem with ties of another weight."""
-    return eqx.tree_at(lambda p: p.tie, problem, np.asarray(float(tie)))
+    """The same problem with ties of another weight; what a law remembers jumps less than the link does."""
+    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(float(tie)))
+    if problem.inner_tie is None:
+        return problem
+    return eqx.tree_at(lambda p: p.inner_tie, problem, np.asarray(min(INNER * tie, TIGHTEST)))
 
 
 def _softened(problem: Problem, speeds: Mapping[str, float]) -> Problem:
     tie = float(problem.tie)
     if not speeds or tie >= SHARP:
         return problem
-    share = SOFT * min(SOFT_AT / tie, 1.0)
-    return softened(problem, {law: share * speed for law, speed in speeds.items()})
+    return softer(problem, speeds, SOFT * min(SOFT_AT / tie, 1.0))
+
+
+def softer(problem: Problem, speeds: Mapping[str, float], share: float) -> Problem:
+    """A problem whose dry friction turns over a ``share`` of the speed at which each law slides, but for those that would be so
+    stiff then that a step of the integration could not follow: these stay sharp."""
+    step = 0.5 * float(problem.windows.panel)
+    inertia = float(problem.base[list(specs(problem.system)).index("inertia")])
+    widths = {law: share * speed for law, speed in speeds.items()}
+    stiff = [law for law, width in widths.items() if _level(problem.system.effects[law]) * step > STABLE * inertia * width]
+    return problem if stiff else with_friction_widths(problem, widths)
+
+
+def _level(law: AbstractEffect) -> float:
+    """The largest torque that a law states [N m]."""
+    found = values(law)
+    return max((abs(found[n]) for n, s in specs(law).items() if s.unit == "N m"), default=0.0)

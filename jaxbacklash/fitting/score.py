@@ -135,8 +135,7 @@ def begin_anew(problem: Problem, theta: Any) -> Unknowns:
 
 
 def score(
-    problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 2, through: bool | None = None,
-    rounds: int = ROUNDS,
+    problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 2, through: bool | None = None
 ) -> tuple[tuple[Score, ...], Unknowns]:
     """Score the parameters of ``unknowns`` on all windows.
 
@@ -148,7 +147,6 @@ def score(
     group : shooting windows per score window
     through : a record is one trajectory, not one anew in every score window; default for a link that is not seen, whose free
         start would hide what the model lacks
-    rounds : how often the search of the starts is gone on with at most
 
     Returns
     -------
@@ -165,19 +163,19 @@ def score(
     near = NEAR * max(1, int(problem.windows.used))
     # An error of a model that is clearly wrong is quoted to three digits: its starts need not creep on for a fourth.
     how = Levenberg(atol=near, rtol=CLEARLY, damping=1e-6, limit=STEPS if begin.starts.shape[0] == 2 else REMEMBERED)
-    solution = _settled(still, led_on(still, begin, follows(problem)), how, rounds)
+    solution = _settled(still, led_on(still, begin, follows(problem)), how)
     found, predicted = solution.value, solution.stats["predicted"]
     scores = tuple(_summarise(still, found, predicted, layout, group, i) for i in range(len(layout.first)))
     return scores, Unknowns(unknowns.theta, found.starts, found.coefficients)
 
 
-def _settled(still: Problem, begin: Unknowns, how: Levenberg, rounds: int) -> Minimum:
+def _settled(still: Problem, begin: Unknowns, how: Levenberg) -> Minimum:
     """The starts searched for, again from where the search has ended as long as that clearly helps.
 
     All windows share one step size: a few that creep round a corner, or have stuck at one, keep all others where they are.
     """
     found = minimise(still, begin, how)
-    for _ in range(rounds):
+    for _ in range(ROUNDS):
         cost = float(found.stats["cost"])
         if not float(found.stats["promise"]) > ON * cost:
             break

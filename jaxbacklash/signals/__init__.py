@@ -20,7 +20,6 @@ from .noise import NoiseEstimate as NoiseEstimate
 from .noise import estimate_noise as estimate_noise
 from .noise import noise_level as noise_level
 from .noise import noise_of_differences as noise_of_differences
-from .noise import noise_of_speed as noise_of_speed
 from .resolution import count_of as count_of
 from .resolution import rounding_noise as rounding_noise
 from .ridge import ridge as ridge

@@ -93,25 +93,6 @@ def _correlations(rows: np.ndarray) -> np.ndarray:
     return np.array([np.sum(rows[:, k:] * rows[:, :-k]) / energy * width / (width - k) for k in range(1, LAGS + 1)])
 
 
-def noise_of_speed(t: np.ndarray, values: np.ndarray, noise: float, *, window: float | None = None) -> float:
-    """Standard deviation of the rate of a smoothed signal that its noise alone makes: slower than that, motion is not told from
-    rest.
-
-    Parameters
-    ----------
-    t, values : uniform samples, shape (N,), t in s
-    noise : standard deviation of the noise on ``values``
-    window : length over which knot counts are chosen [s]; default `span`
-
-    Returns
-    -------
-    standard deviation in the unit of ``values`` per second
-    """
-    window = span((t[-1] - t[0]) / (t.size - 1)) if window is None else window
-    alone = noise * np.random.default_rng(0).standard_normal(t.size)
-    return float(np.std(fit_spline(t, alone, t[0], window / choose_intervals(t, values, window))(t, 1)))
-
-
 def noise_of_differences(values: np.ndarray) -> float:
     """Standard deviation of the white noise on a signal with corners and jumps of slope, such as a contact force.
 

@@ -17,18 +17,15 @@ MANY = 4
 """Laws, some with internal states, above which a panel is advanced in loops."""
 
 
-def one_panel(system: Any, t: Any, state: Any, a: Any, b: Any, h: Any, located: bool, *, many: int = MANY) -> Any:
-    """The state one panel of length ``h`` [s] after ``t``, the drive given as ``a`` and ``b`` at the panel's two edges.
-
-    ``many`` : laws, some with internal states, above which the panel is advanced in loops: the same numbers, a shorter program
-    """
+def one_panel(system: Any, t: Any, state: Any, a: Any, b: Any, h: Any, located: bool) -> Any:
+    """The state one panel of length ``h`` [s] after ``t``, the drive given as ``a`` and ``b`` at the panel's two edges."""
     base = Cubic.hermite(a.x, a.dx, b.x, b.dx, h)
     force = Cubic.between(a.force, a.dforce, b.force, b.dforce, h)
 
     def drive_at(tau: Any) -> Any:
         return type(a)(base.at(tau), base.slope(tau), force.at(tau))
 
-    in_turns = len(state) > 2 and len(system.effects) > many
+    in_turns = len(state) > 2 and len(system.effects) > MANY
     if located and system.slides:
         return advance_dry(system, t, state, drive_at, base, h)
     if located:

@@ -27,7 +27,7 @@ PACKED_SUFFIXES = (".gz", ".bz2", ".xz", ".lzma")
 """Suffixes by which NumPy unpacks a file, whatever it holds."""
 
 
-def read_plain(layout: Layout, decimal: str | None, *, whole: bool = True) -> tuple[np.ndarray, str, np.ndarray | None] | None:
+def read_plain(layout: Layout, decimal: str | None) -> tuple[np.ndarray, str, np.ndarray | None] | None:
     """All values of a table of numbers.
 
     Parameters
@@ -35,8 +35,6 @@ def read_plain(layout: Layout, decimal: str | None, *, whole: bool = True) -> tu
     layout : Layout
     decimal : str or None
         The decimal mark, where the user said it.
-    whole : bool
-        Let NumPy open the file itself where it can, which is faster than handing it the lines.
 
     Returns
     -------
@@ -57,7 +55,7 @@ def read_plain(layout: Layout, decimal: str | None, *, whole: bool = True) -> tu
         return None
     try:
         _load(map(_pointed, layout.sample) if comma else layout.sample, layout)
-        values, last = (_at_once(layout) if whole and not comma else None) or _by_lines(layout, comma)
+        values, last = (None if comma else _at_once(layout)) or _by_lines(layout, comma)
     except ValueError:
         return None
     if values.shape[1] != len(layout.names) or (layout.separator != "," and _may_group(layout, values, comma, decimal)):

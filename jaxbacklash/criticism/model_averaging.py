@@ -14,38 +14,35 @@ import numpy as np
 from ..fitting.estimates import judge
 from ..fitting.result import Fit
 from .evidence import gain
-from .workbench import Trial
+from .fitted_model import FittedModel
 
 
-def either(fit: Fit, trial: Trial, others: Sequence[Trial]) -> Fit:
+def averaged(fit: Fit, model: FittedModel, others: Sequence[FittedModel]) -> Fit:
     """A fit whose covariance, standard errors and verdicts allow for other models that do as well.
 
     Parameters
     ----------
     fit : of the model kept
-    trial : the same as the search has it
-    others : models that the record cannot tell from it; left out are those that do not compare, as they are fitted to windows
-        apart and it is one trajectory, or the other way round
+    model : the same as the search has it
+    others : models that the record cannot tell from it
     """
-    more = between(trial, [other for other in others if other.tied == trial.tied])
+    more = between(model, others)
     if not np.any(more):
         return fit
     covariance = fit.covariance + more
     stderr = dict(zip(fit.free, np.sqrt(np.maximum(np.diag(covariance), 0.0))))
-    parameters = judge(
-        fit.system, fit.free, stderr, fit.records, per_inertia=fit.per_inertia, translational=fit.translational
-    )
+    parameters = judge(fit.system, fit.free, stderr, fit.records, per_inertia=fit.per_inertia, translational=fit.translational)
     return dataclasses.replace(fit, parameters=parameters, covariance=covariance)
 
 
-def between(trial: Trial, others: Sequence[Trial]) -> np.ndarray:
+def between(model: FittedModel, others: Sequence[FittedModel]) -> np.ndarray:
     """Covariance between the models (q, q), in the order and units of the free parameters of the one kept; what another model
     does not have stays where it is."""
-    here = trial.value
+    here = model.value
     away = np.array([[other.value.get(name, at) - at for name, at in here.items()] for other in others])
     if not away.size:
         return np.zeros((len(here), len(here)))
-    evidence = np.array([0.0, *(gain(trial, other) for other in others)])
+    evidence = np.array([0.0, *(gain(model, other) for other in others)])
     weights = np.exp(0.5 * (evidence - np.max(evidence)))
     weights /= np.sum(weights)
     return np.asarray((away.T * weights[1:]) @ away)

@@ -1,4 +1,4 @@
-r"""A quick look at which effects may be missing: weak-form regression on the measured motion, no simulation.
+r"""Weak-form regression: which laws the measured motion speaks for, without simulating anything.
 
 What the model's torque leaves of :math:`J\ddot y` is averaged under a bump that carries the derivatives, and regressed on the
 torques the absent effects would exert on the measured motion, beside the ways in which the model's own parameters can still move.
@@ -25,8 +25,8 @@ RUNAWAY = 1e100
 """A torque this large, whatever its unit, belongs to a motion that has run away."""
 
 
-class QuickLook(Averaged):
-    """The record seen through the bump, ready to be regressed on any law."""
+class WeakForm(Averaged):
+    """A record averaged under bumps, ready to be regressed on any law."""
 
     def __init__(self, record: Record) -> None:
         super().__init__(record)
@@ -50,11 +50,11 @@ class QuickLook(Averaged):
         seeds = np.zeros((len(free), len(names)))
         seeds[np.arange(len(free)), [names.index(n) for n in free]] = 1.0
         torque, columns = torques(system, seeds, self.motion)
-        return _led(torque), _led(columns)
+        return _bounded(torque), _bounded(columns)
 
     def column(self, effect: AbstractEffect, system: System) -> np.ndarray:
         """Torque of an effect on the measured motion, under the bump (R,)."""
-        return self.average(_led(own_torques([effect], system, self.motion)[0]))
+        return self.average(_bounded(own_torques([effect], system, self.motion)[0]))
 
     def choose(
         self, system: System, free: tuple[str, ...], variants: list[AbstractEffect], keep: int = 1
@@ -69,34 +69,22 @@ class QuickLook(Averaged):
         """
         if len(variants) <= keep:
             return variants
-        worth = self._worth(system, free, variants)
-        return [variants[k] for k in np.argsort(-worth)[:keep]]
+        fall = self._correlations(system, free, variants)
+        return [variants[k] for k in np.argsort(-fall)[:keep]]
 
-    def share(self, system: System, free: tuple[str, ...], variants: list[AbstractEffect]) -> float:
-        """Share of what a model leaves that the likeliest shape of a law takes away, 0 to 1."""
-        return float(np.max(self._worth(system, free, variants)) ** 2)
-
-    def evidence(
-        self, system: System, free: tuple[str, ...], variants: list[AbstractEffect], known: np.ndarray | None = None
-    ) -> float:
-        """Fall of the sum of squares, in units of the rows' own variance, by the likeliest shape of a law: near 1 by chance.
-
-        ``known`` (R,) is what the look itself leaves, where the model is right.
-        """
-        share = float(np.max(self._worth(system, free, variants, known)) ** 2)
+    def evidence(self, system: System, free: tuple[str, ...], variants: list[AbstractEffect]) -> float:
+        """Fall of the sum of squares, in units of the rows' own variance, by the likeliest shape of a law: near 1 by chance."""
+        share = float(np.max(self._correlations(system, free, variants)) ** 2)
         return share * (self.acceleration.size - ORDER)
 
-    def _worth(
-        self, system: System, free: tuple[str, ...], variants: list[AbstractEffect], known: np.ndarray | None = None
-    ) -> np.ndarray:
+    def _correlations(self, system: System, free: tuple[str, ...], variants: list[AbstractEffect]) -> np.ndarray:
         """Correlation of each variant's torque with what the model leaves, none where physics forbids its sign."""
         if self.blind:
             return np.zeros(len(variants))
         left, by = self.missing(system, free)
-        left = left if known is None else left - known
         name, told = canonical_name(variants[0]), np.stack([ravel(v) for v in variants])
         if name not in self._columns or not np.array_equal(self._columns[name][0], told):
-            self._columns[name] = told, self.average(_led(own_torques(variants, system, self.motion))).T
+            self._columns[name] = told, self.average(_bounded(own_torques(variants, system, self.motion))).T
         columns = self._columns[name][1]
         white = whitener(left - by @ np.linalg.lstsq(by, left, rcond=None)[0])
         left, by, columns = white(left), white(by), white(columns)
@@ -108,7 +96,7 @@ class QuickLook(Averaged):
         return np.where(signed, np.maximum(fall, 0.0), np.abs(fall))
 
 
-def _led(torques: np.ndarray) -> np.ndarray:
+def _bounded(torques: np.ndarray) -> np.ndarray:
     """Torques along the motion (..., N), none of a law whose own motion runs away when it is led along: it speaks for nothing."""
     return np.where(np.max(np.abs(torques), axis=-1, keepdims=True) < RUNAWAY, torques, 0.0)
 

@@ -1,0 +1,65 @@
+r"""What a torque along a fitted model's own motion would bring: screening of laws that have no sensitivity at strength zero.
+
+A law that remembers is followed along the smoothed motion that the model was fitted with, and its torque is put on the link as
+an outer one, a share of it and twice that. The model's cost after one linear step, windows and parameters moving along, is a
+parabola of that share: its lowest point says what the law brings, and at what strength. `screening` asks for it.
+"""
+
+from __future__ import annotations
+
+import equinox as eqx
+import numpy as np
+
+from ..fitting.continuation import SHARP, tied
+from ..fitting.problem import Unknowns
+from ..mechanics import AbstractEffect
+from .along_motion import motion, own_torques
+from .fitted_model import FittedModel
+from .model_fitter import ModelFitter
+from .perturbed import answered, model_record, panel_edges, parabola
+
+SHARE = 0.3
+"""Share of a law's torque at its guess that is put on the link first."""
+
+
+class ForceTest:
+    """How a fitted model answers to torques on its link.
+
+    Parameters
+    ----------
+    fitter : of the record
+    model : a fitted model
+    """
+
+    def __init__(self, fitter: ModelFitter, model: FittedModel) -> None:
+        problem, _ = fitter.problem(fitter.effects(model), model.system)
+        self.problem, self.system = tied(problem, min(model.tie, SHARP)), model.system
+        still = np.zeros(problem.directions.shape[1])
+        self.unknowns = Unknowns(still, model.unknowns.starts, model.unknowns.coefficients)
+        self.applied, self.edges = np.asarray(fitter.windows.force), panel_edges(fitter)
+        self.still, predicted = answered(self.problem, self.unknowns)
+        self.along = motion(model_record(fitter, predicted))
+
+    def best(self, shapes: list[AbstractEffect], instead: list[AbstractEffect]) -> tuple[float, AbstractEffect]:
+        """The largest fall of minus twice the log likelihood among a law's shapes, and that shape at its best strength; that of a
+        law which comes ``instead`` of others of the model is left as it is."""
+        less = sum((own_torques([law], self.system, self.along)[0] for law in instead), np.zeros(self.along.t.size))
+        found = [self.fall(torque - less) for torque in own_torques(shapes, self.system, self.along)]
+        best = max(range(len(shapes)), key=lambda k: found[k][0])
+        gain, size = found[best]
+        return gain, shapes[best].scaled(size) if gain > 0.0 and not instead else shapes[best]
+
+    def fall(self, torque: np.ndarray) -> tuple[float, float]:
+        """What a torque (N,) [N m] along the motion brings at its best size, and that size; nothing where it is below zero."""
+        torque = np.interp(self.edges, self.along.t, torque)
+        once = self._answer(SHARE * torque)
+        if not once < 0.0:
+            return 0.0, 1.0  # less than half of that share is best, if any
+        slope, curvature = parabola(once, self._answer(2.0 * SHARE * torque), SHARE)
+        if not (np.isfinite(curvature) and curvature > 0.0 and slope < 0.0):
+            return 0.0, 1.0
+        return slope**2 / curvature, -slope / curvature
+
+    def _answer(self, torque: np.ndarray) -> float:
+        problem = eqx.tree_at(lambda p: p.windows.force, self.problem, self.applied + torque)
+        return answered(problem, self.unknowns)[0] - self.still

@@ -1,0 +1,90 @@
+"""What a fitted trajectory's misfit says to a small change of its problem, with every unknown free to make up for it.
+
+The same program that fits a model looks at it with a little torque applied as a force, or with the measurement blurred: the
+cost to which the next step would come down is the score of that change (a score test, Rao 1948), at no new compilation.
+`unnamed` holds torques outside the catalogue against a model in this way.
+"""
+
+from __future__ import annotations
+
+import equinox as eqx
+import numpy as np
+
+from ..fitting.continuation import TIGHTEST
+from ..fitting.levenberg import Levenberg, minimise
+from ..fitting.problem import Problem, Unknowns
+from ..fitting.shooting import Prediction
+from ..mechanics import AbstractEffect
+from ..records import Record
+from .fitted_model import FittedModel
+from .model_builder import ModelBuilder
+
+BLUR = 0.3
+"""Size of a blur of the sensor that is tried, in units of the noise."""
+
+
+def panel_edges(builder: ModelBuilder) -> np.ndarray:
+    """Times (W, P + 1) at which a force on the link is given [s]."""
+    windows = builder.windows
+    return np.asarray(windows.t0)[:, None] + float(windows.panel) * np.arange(np.shape(windows.force)[1])
+
+
+def delayed(builder: ModelBuilder, model: FittedModel) -> bool:
+    """Whether a model's measured channel lags: how it was read between two samples is not known."""
+    return any(builder.laws[n].lag is not AbstractEffect.lag for n in model.names)
+
+
+def blurred(builder: ModelBuilder, model: FittedModel) -> float:
+    r"""What a sensor that averages over a short time would take off the sum of squares beside a tied model, at most.
+
+    An average over a time :math:`w` shows :math:`z + \ddot z w^2/24`, and so does a delay that ends between two samples and is
+    read along a straight line, with :math:`f(1-f)\Delta t^2/2`. What explains no more than that speaks of the sensor alone.
+    """
+    problem, unknowns = as_it_ended(builder, model)
+    measured = np.asarray(builder.windows.measured)
+
+    def answer(shift: np.ndarray) -> tuple[float, Prediction]:
+        return answered(eqx.tree_at(lambda p: p.windows.measured, problem, measured + shift), unknowns)
+
+    still, predicted = answer(np.zeros(measured.shape))
+    moved = np.asarray(predicted.motion)
+    bend = np.gradient(np.gradient(moved, axis=1), axis=1) * (np.asarray(builder.windows.weight) > 0.0)
+    size = float(np.sqrt(np.mean(bend**2)))
+    if not size > 0.0:
+        return 0.0
+    bend *= BLUR * builder.layout.noise[0] / size
+    slope, curvature = parabola(answer(-bend)[0] - still, answer(-2.0 * bend)[0] - still, 1.0)
+    return slope**2 / curvature if np.isfinite(curvature) and curvature > 0.0 else 0.0
+
+
+def answered(problem: Problem, unknowns: Unknowns) -> tuple[float, Prediction]:
+    """Cost to which a fit would come down after a small change of its problem, and its trajectory before it moves.
+
+    The step is not taken: along a curved valley that takes many, whose ends differ by more than so small a change does.
+    """
+    stats = minimise(problem, unknowns, Levenberg(limit=1)).stats
+    return float(stats["cost"] - stats["promise"]), stats["predicted"]
+
+
+def parabola(once: float, twice: float, share: float) -> tuple[float, float]:
+    """Slope at no share, and curvature, of the parabola through nothing, ``once`` at a share, ``twice`` at twice of it."""
+    return (2.0 * once - 0.5 * twice) / share, (twice - 2.0 * once) / share**2
+
+
+def as_it_ended(builder: ModelBuilder, model: FittedModel) -> tuple[Problem, Unknowns]:
+    """The problem of a tied model, and its unknowns where its fit had ended."""
+    problem, _ = builder.problem(builder.effects(model), model.system)
+    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIGHTEST))
+    return problem, Unknowns(np.zeros(problem.directions.shape[1]), model.unknowns.starts, model.unknowns.coefficients)
+
+
+def model_record(builder: ModelBuilder, predicted: Prediction) -> Record:
+    """A fitted trajectory at the samples of the record, the measured one where windows end before it."""
+    record = builder.record
+    seen = np.asarray(builder.windows.weight) > 0.0
+    channels: dict[str, np.ndarray] = {}
+    for name, values in ((record.observed_name, predicted.motion), ("x", predicted.input[:, : builder.windows.samples])):
+        if name in record.channels and np.shape(values) == seen.shape and not (name == "x" and builder.windows.by_force):
+            values = np.asarray(values)[seen][: record.samples]
+            channels[name] = np.concatenate([values, record.channels[name][values.size :]])
+    return record.replace(**channels)
