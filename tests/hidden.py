@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 import jaxbacklash as jb
+from jaxbacklash.criticism.model_fitter import ModelFitter
+from jaxbacklash.fitting.setup import base_system
 
 NOISE, RATE = 3e-5, 500.0
 
@@ -37,3 +39,9 @@ def missing_from(system, rig, truth, torque):
 
     given = joint(float(system.contact.backlash), float(system.contact.stiffness), float(system.damper.damping))
     return joint(rig.backlash, rig.stiffness, rig.damping) + torque - given
+
+
+def fitter(record, inertia, model="joint", beside=None, window=0.2):
+    """What fits models of a record: the joint of ``inertia`` with any set of laws."""
+    base, free, _ = base_system(record, model, inertia)
+    return ModelFitter(record, base, free, window, beside=beside)

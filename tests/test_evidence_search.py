@@ -1,12 +1,9 @@
 """The search by evidence: what hides is named, what does not is not, and what is outside the catalogue leaves a torque out."""
 
-import numpy as np
 import pytest
 
-import jaxbacklash as jb
 from jaxbacklash.criticism.evidence_search import EvidenceSearch
 from jaxbacklash.criticism.model_fitter import ModelFitter
-from jaxbacklash.criticism.refine import refine
 from jaxbacklash.fitting.setup import base_system
 
 from .hidden import hidden
@@ -17,7 +14,7 @@ def searched(name, kind, seed, seconds=6.0, **values):
     record, rig, effects, _ = hidden(name, kind, seed, seconds, **values)
     base, free, _ = base_system(record, "joint", rig.inertia)
     search = EvidenceSearch(ModelFitter(record, base, free, None))
-    return search, search.run()[-1].trial, rig, effects
+    return search, search.run()[-1].model, rig, effects
 
 
 def test_nothing_is_added_where_nothing_hides():
@@ -56,9 +53,3 @@ def test_a_torque_outside_the_catalogue_is_left_out_and_said():
     _, model, *_ = searched("unknown_disturbance", "multisine", 7, 10.0)
     assert not model.tied
 
-
-def test_an_unknown_engine_is_refused():
-    t = np.arange(400.0) / 500.0
-    record = jb.Record(t, {"x": 0.05 * np.sin(20.0 * t), "z": 0.01 * np.sin(20.0 * t + 1.0)})
-    with pytest.raises(jb.BadInput, match="wanted one of windows, evidence"):
-        refine(record, inertia=3.0, engine="best")

@@ -1,9 +1,10 @@
 """Files of loggers, spreadsheets and robots, each written by its own library, give the record that went in."""
 
+import builtins
 import importlib
+import importlib.util
 import shlex
 import subprocess
-import sys
 import warnings
 from pathlib import Path
 
@@ -22,13 +23,6 @@ from .test_formats import refused, table_of
 APART = ("rec.mf4", "rec.mdf")
 """Read in a process of their own, a second each."""
 QUICK = [pytest.param(name, marks=pytest.mark.slow) if name in APART else name for name in WRITERS]
-
-
-def missing(monkeypatch, module):
-    """As where a library is not installed: importing it fails, and it has no spec."""
-    for name in [name for name in sys.modules if name.partition(".")[0] == module]:
-        monkeypatch.delitem(sys.modules, name)
-    monkeypatch.setitem(sys.modules, module, None)
 
 
 def attempt(path: Path) -> Table | str | None:
@@ -123,7 +117,16 @@ def test_bytes_turned_at_random_never_end_in_a_traceback(files, name, tmp_path):
     ],
 )
 def test_a_missing_library_is_named_with_the_command_that_installs_it(files, name, module, package, monkeypatch):
-    missing(monkeypatch, module)
+    real = importlib.import_module
+
+    def without(wanted, *rest):
+        if wanted.split(".")[0] == module:
+            raise ImportError(wanted)
+        return real(wanted, *rest)
+
+    found = importlib.util.find_spec
+    monkeypatch.setattr(importlib, "import_module", without)
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name, *rest: None if name == module else found(name, *rest))
     refused(files / name, package, 'pip install "jaxbacklash[io]"')
 
 
@@ -141,7 +144,14 @@ def test_a_missing_library_for_tables_of_matlab_is_named(tmp_path, monkeypatch):
 
     with quiet():
         matio.save_to_mat(str(tmp_path / "rec.mat"), {"T": pandas.DataFrame(course())}, version="v7")
-    missing(monkeypatch, "matio")
+    real = builtins.__import__
+
+    def without(wanted, *rest, **more):
+        if wanted == "matio":
+            raise ImportError(wanted)
+        return real(wanted, *rest, **more)
+
+    monkeypatch.setattr(builtins, "__import__", without)
     refused(tmp_path / "rec.mat", "class table", 'pip install "jaxbacklash[io]"')
 
 

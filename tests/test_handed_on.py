@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 
 import jaxbacklash as jb
-from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting import handed_on as module
 from jaxbacklash.fitting.handed_on import handed_on, stuck_windows
 from jaxbacklash.fitting.levenberg import Levenberg, Minimum
 from jaxbacklash.fitting.problem import Unknowns
-from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.fitting.shooting import Prediction
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import values as values_of
 from jaxbacklash.sensors import SensorOffset
+
+from .hidden import fitter
 
 WINDOWS, SAMPLES = 40, 10
 
@@ -153,9 +153,8 @@ def test_a_first_window_astray_bends_no_joint(monkeypatch, draw):
     own = np.random.default_rng([7, draw])
     monkeypatch.setattr(strangers, "measure", lambda truth, rng, x, z, step: measure(truth, own, x, z, step))
     case = make_case(12, 10.0, 19)
-    base, free, _ = base_system(case.record, "joint", case.rig.inertia)
-    bench = Workbench(case.record, base, free, 0.2)
-    found = bench.fit({name: catalogue()[name](**values) for name, values in case.values.items()}, patience=60)
+    own = fitter(case.record, case.rig.inertia)
+    found = own.fit_model({name: catalogue()[name](**values) for name, values in case.values.items()})
     assert found.misfit < 1.03
     for name in ("backlash", "stiffness", "damping"):
         assert values_of(found.system)[name] == pytest.approx(getattr(case.rig, name), rel=0.01)
@@ -169,11 +168,10 @@ def test_one_window_of_two_hundred_at_the_wrong_edge_costs_no_evidence(phase):
     from benchmarks.effect_strangers import make_case
 
     case = make_case(18, 10.0, 53)
-    base, free, _ = base_system(case.record, "joint", case.rig.inertia)
-    bench = Workbench(case.record, base, free, 0.2)
+    one, other = (fitter(case.record, case.rig.inertia) for _ in range(2))  # each keeps the better of two fits of one model
     ripple = catalogue()["torque_ripple"]
-    found = bench.fit({"torque_ripple": ripple(1.0, 91.0, phase)}, bench.fit({}, patience=60))
-    best = bench.fit({"torque_ripple": ripple(**case.values["torque_ripple"])}, patience=60)
+    found = one.fit_model({"torque_ripple": ripple(1.0, 91.0, phase)}, one.fit_model({}))
+    best = other.fit_model({"torque_ripple": ripple(**case.values["torque_ripple"])})
     assert found.criterion < best.criterion + 1.0
 
 

@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 
 from jaxbacklash.criticism.refine import refine
-from jaxbacklash.criticism.workbench import Workbench
-from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.records import Record
 
 SIGMA = 9e-4  # rad
@@ -41,13 +39,3 @@ def test_what_heavy_noise_hides_is_named(number, hidden, kind):
     assert set(found.effects) == set(hidden)
     assert found.verdict.complete
     assert found.fit.score.median < 1.05
-
-
-@pytest.mark.parametrize(("number", "kind", "long"), [(60008, "chirp", True), (60007, "modulated", False)])
-def test_a_slow_chirp_lets_the_link_rest(number, kind, long):
-    """It begins below the friction; motion that turns at once rests no longer than that takes."""
-    record, rig = made(number, ("coulomb_joint",), kind)
-    base, free, _ = base_system(record, "joint", rig.inertia)
-    bench = Workbench(record, base, free, 0.2)
-    assert bench.rests("joint") == long
-    assert not bench.rests("ground")  # the base moves

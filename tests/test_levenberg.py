@@ -5,29 +5,27 @@ import jax
 import numpy as np
 import pytest
 
-from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting.block_levenberg import BlockLevenbergMarquardt
 from jaxbacklash.fitting.levenberg import Levenberg, minimise
 from jaxbacklash.fitting.problem import Unknowns
 from jaxbacklash.fitting.search import TIES, tie_windows
-from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
+from jaxbacklash.fitting.setup import first_guess, make_problem
 from jaxbacklash.fitting.shooting import linearise, residual_rows, residuals, shoot
-from jaxbacklash.parameters import with_values
+from jaxbacklash.parameters import values, with_values
 
-from .hidden import hidden
+from .hidden import fitter, hidden
 
 
 def joint(name, seed, seconds):
-    """A workbench and the problem of the joint with the effect that a record hides, at its true values."""
+    """What builds the problems of a record, and the effect that it hides at its true values."""
     record, rig, effects, _ = hidden(name, "chirp", seed, seconds)
-    base, free, _ = base_system(record, "joint", rig.inertia)
-    bench = Workbench(record, base, free, 0.2)
-    return bench, {n: bench.laws[n](**values) for n, values in effects.items()}
+    builder = fitter(record, rig.inertia)
+    return builder, {n: builder.laws[n](**own) for n, own in effects.items()}
 
 
 def test_a_shot_costs_half_the_sum_of_its_squares():
-    bench, _ = joint(None, 2, 4.0)
-    problem, _ = bench.problem({}, bench.base)
+    builder, _ = joint(None, 2, 4.0)
+    problem, _ = builder.problem({}, builder.base)
     problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(3.0))
     guess = first_guess(problem)
     rng = np.random.default_rng(3)
@@ -57,8 +55,8 @@ def test_blocks_are_those_of_the_rows_that_optimistix_is_handed(name):
 
 
 def test_a_step_that_is_turned_down_changes_nothing_but_the_damping():
-    bench, _ = joint(None, 2, 4.0)
-    problem, _ = bench.problem({}, bench.base)
+    builder, _ = joint(None, 2, 4.0)
+    problem, _ = builder.problem({}, builder.base)
     solver = BlockLevenbergMarquardt()
     guess = first_guess(problem)
     shapes = eqx.filter_eval_shape(residual_rows, guess, problem)
@@ -77,11 +75,10 @@ def test_a_step_that_is_turned_down_changes_nothing_but_the_damping():
 @pytest.mark.parametrize("seed", [3, 21])
 def test_where_a_jagged_cost_ends_the_search_nothing_is_left_to_gain(seed):
     """Dry friction makes the cost of a tied trajectory jagged: half the steps were spent where thousandths were gained."""
-    bench, effects = joint("coulomb_joint", seed, 12.0)
-    loose = bench.fit(effects, patience=60)
-    problem, _ = bench.problem(effects, loose.system)
+    builder, effects = joint("coulomb_joint", seed, 12.0)
+    problem, _ = builder.problem(effects, builder.base)
+    begin = minimise(problem, first_guess(problem), Levenberg(limit=60)).value
     problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1]))
-    begin = Unknowns(np.zeros(problem.directions.shape[1]), loose.unknowns.starts, loose.unknowns.coefficients)
     ended = minimise(problem, begin, Levenberg(damping=1e-9, limit=150))
     further = minimise(problem, ended.value, Levenberg(atol=1e-9, limit=60))
     assert int(ended.stats["steps"]) < 150
@@ -98,12 +95,13 @@ def test_where_a_jagged_cost_ends_the_search_nothing_is_left_to_gain(seed):
 @pytest.mark.slow
 def test_a_parameter_at_its_bound_does_not_tear_windows_apart_that_are_tied():
     """What a bound holds is as good as not free: cut off alone, its share of the step left every window where none goes on."""
-    bench, _ = joint(None, 6, 6.0)
-    free = bench.fit({}, patience=60)
-    system = with_values(free.system, {"stiffness": 0.98 * free.value["stiffness"]})
-    starts, found = free.unknowns, []
-    for names in (bench.base_free, tuple(n for n in bench.base_free if n != "stiffness")):
-        problem = make_problem(system, bench.windows, names)
+    builder, _ = joint(None, 6, 6.0)
+    problem, _ = builder.problem({}, builder.base)
+    starts, found = minimise(problem, first_guess(problem), Levenberg(limit=60)).value, []
+    free = problem.rebuild(starts.theta)
+    system = with_values(free, {"stiffness": 0.98 * values(free)["stiffness"]})
+    for names in (builder.base_free, tuple(n for n in builder.base_free if n != "stiffness")):
+        problem = make_problem(system, builder.windows, names)
         if "stiffness" in names:
             cap = np.where(np.array(names) == "stiffness", 0.0, problem.upper)
             problem = eqx.tree_at(lambda p: p.upper, problem, cap)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
-from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.criticism.model_fitter import ModelFitter
 from jaxbacklash.fitting.levenberg import Levenberg, minimise
 from jaxbacklash.fitting.search import inverse_information
 from jaxbacklash.fitting.setup import base_system, first_guess
@@ -60,12 +60,12 @@ def test_the_fitted_input_has_no_corner_where_no_knot_is_needed():
     assert needed <= LEAST_INTERVALS // 2
     assert windows.intervals == LEAST_INTERVALS
     base, free, _ = base_system(record, "joint", rig.inertia)
-    bench = Workbench(record, base, free, 0.2)
-    problem, _ = bench.problem({}, base)
+    own = ModelFitter(record, base, free, 0.2)
+    problem, _ = own.problem({}, base)
     found = minimise(problem, first_guess(problem), Levenberg(limit=10)).value
-    moved = np.asarray(found.coefficients) - np.asarray(bench.windows.coefficients)
-    assert np.max(np.abs(moved)) > 0.01 * bench.layout.input_noise[0]
-    coefficients = np.asarray(found.coefficients)[: bench.layout.windows[0]].ravel()
+    moved = np.asarray(found.coefficients) - np.asarray(own.windows.coefficients)
+    assert np.max(np.abs(moved)) > 0.01 * own.layout.input_noise[0]
+    coefficients = np.asarray(found.coefficients)[: own.layout.windows[0]].ravel()
     corners = np.diff(coefficients, DEGREE + 1)  # row i is the corner at knot i + 1
     parts = LEAST_INTERVALS // next(n for n in (1, 2, 4, 8) if n >= needed)
     at = np.arange(corners.size) + 1
@@ -76,23 +76,18 @@ def test_the_fitted_input_has_no_corner_where_no_knot_is_needed():
 def test_noise_in_a_slow_drive_does_not_smear_dry_friction():
     # With eighty knots a second, three times as many as the drive needs, damping was 2.8 standard errors too small on average
     # and friction 3.2 too large.
-    scores = {True: [], False: []}
+    scores = []
     for draw in range(12):
         rig, friction, record = seen(draw)
         base, free, _ = base_system(record, "joint", rig.inertia)
-        bench = Workbench(record, base, free, 0.2)
         truth = {"backlash": rig.backlash, "stiffness": rig.stiffness, "damping": rig.damping}
         law = catalogue()["coulomb_joint"](**friction["coulomb_joint"])
-        trial = bench.fit({"coulomb_joint": law}, joint=with_values(base, truth), patience=60)
-        for tied in (False, True):
-            if tied:
-                trial = bench.fit(bench.effects(trial), trial, tied=True, patience=80)
-            q = len(trial.free)
-            error = np.sqrt(np.diag(inverse_information(trial.schur[:q, :q]))) * trial.scales[:q]
-            true = truth | {"coulomb_joint.Tc": friction["coulomb_joint"]["Tc"]}
-            scores[tied].append([(trial.value[n] - true[n]) / e for n, e in zip(trial.free, error)])
-    for tied, rows in scores.items():
-        off = np.array(rows)
-        # Twelve draws: a mean of standard scores has a standard deviation of 0.29, their own spread one of 0.2.
-        assert np.all(np.abs(np.mean(off, axis=0)) < 1.0), (tied, np.mean(off, axis=0))
-        assert np.all(np.std(off, axis=0) < 1.7), (tied, np.std(off, axis=0))
+        model = ModelFitter(record, with_values(base, truth), free, 0.2).fit_model({"coulomb_joint": law})
+        q = len(model.free)
+        error = np.sqrt(np.diag(inverse_information(model.information[:q, :q]))) * model.scales[:q]
+        true = truth | {"coulomb_joint.Tc": friction["coulomb_joint"]["Tc"]}
+        scores.append([(model.value[n] - true[n]) / e for n, e in zip(model.free, error)])
+    off = np.array(scores)
+    # Twelve draws: a mean of standard scores has a standard deviation of 0.29, their own spread one of 0.2.
+    assert np.all(np.abs(np.mean(off, axis=0)) < 1.0), np.mean(off, axis=0)
+    assert np.all(np.std(off, axis=0) < 1.7), np.std(off, axis=0)

@@ -5,17 +5,13 @@ import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.criticism.refine import _Judge
-from jaxbacklash.criticism.search import Search
-from jaxbacklash.criticism.workbench import Workbench
-from jaxbacklash.fitting.setup import base_system
-from tests.hidden import hidden
+from tests.hidden import fitter, hidden
 
 
 def refined_base(record, inertia):
     """The base model as `refine` tells it."""
-    base, free, _ = base_system(record, "joint", inertia)
-    bench = Workbench(record, base, free, None)
-    return _Judge(bench, None, "joint", False, False, None, lambda fit: None)(Search(bench).base())
+    own = fitter(record, inertia, window=None)
+    return _Judge(own, None, "joint", False, False, None)(own.fit_model({}))
 
 
 @pytest.mark.parametrize("missing", ["cubic_stiffness", None], ids=["incomplete", "right"])

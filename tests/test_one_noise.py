@@ -7,11 +7,9 @@ import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.criticism.refine import _Judge
-from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting.left_over import quieter
-from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.model_file import noise_known
-from tests.hidden import hidden
+from tests.hidden import fitter, hidden
 from tests.in_process import call
 from tests.test_noise_level import shaken
 
@@ -29,21 +27,19 @@ def shaken_twice():
 
 
 def hardening(record, heldout=None):
-    """The workbench of a refinement, and the model that explains the record, one trajectory, before the noise is looked at."""
-    base, free, _ = base_system(record, "linear", None)
-    bench = Workbench(record, base, free, None, beside=heldout)
+    """The fitter of a refinement, and the model that explains the record before the noise is looked at."""
+    own = fitter(record, None, "linear", heldout, None)
     law = jb.fit(record, model="linear", effects=["cubic_stiffness"], starts=1).system
-    first = bench.fit(dict(law.effects), joint=law, patience=60)
-    return bench, bench.fit(bench.effects(first), first, tied=True, patience=60)
+    return own, own.fit_model(dict(law.effects))
 
 
-def settled(bench, trial):
+def settled(own, model):
     """The search's rounds: the noise is taken from the model, and the model fitted again."""
     for _ in range(4):
-        if (factor := bench.too_loud(trial)) == 1.0:
-            return trial
-        bench.quieter(factor)
-        trial = bench.fit(bench.effects(trial), trial, tied=True, patience=60)
+        if (factor := own.too_loud(model)) == 1.0:
+            return model
+        own.quieter(factor)
+        model = own.fit_model(own.effects(model), model)
     raise AssertionError("the noise does not settle")
 
 
@@ -52,9 +48,9 @@ def test_fit_and_refine_find_one_noise_under_a_force_of_noise(shaken_twice):
     record = shaken_twice[0]
     fitted = jb.fit(record, model="linear", effects=["cubic_stiffness"], starts=1)
     assert fitted.noise[0] < 0.5 * fitted.noise_alone[0]  # the samples alone cannot tell it
-    bench, trial = hardening(record)
-    trial = settled(bench, trial)
-    refined = _Judge(bench, None, "linear", False, True, None, lambda fit: None)(trial)
+    own, model = hardening(record)
+    model = settled(own, model)
+    refined = _Judge(own, None, "linear", False, True, None)(model)
     assert refined.noise[0] == pytest.approx(fitted.noise[0], rel=0.02)
     assert refined.noise_alone == pytest.approx(fitted.noise_alone)
     assert refined.known_noise == pytest.approx(fitted.known_noise, rel=0.02)
@@ -66,9 +62,9 @@ def test_fit_and_refine_find_one_noise_under_a_force_of_noise(shaken_twice):
 def test_compare_tells_of_an_incomplete_model_what_refine_did(shaken_twice, tmp_path):
     """The noise was found beside a model that explains; one that does not is as wrong for `compare` as in the table."""
     record, heldout = shaken_twice
-    bench, trial = hardening(record, heldout)
-    settled(bench, trial)
-    refined = _Judge(bench, heldout, "linear", False, True, None, lambda fit: None)(bench.fit({}, patience=60))
+    own, model = hardening(record, heldout)
+    settled(own, model)
+    refined = _Judge(own, heldout, "linear", False, True, None)(own.fit_model({}))
     assert refined.heldout.rms > 10.0
     told(refined, record, heldout, tmp_path)
 
@@ -76,9 +72,8 @@ def test_compare_tells_of_an_incomplete_model_what_refine_did(shaken_twice, tmp_
 def test_compare_tells_what_refine_did_of_windows_that_no_model_joins(tmp_path):
     record, rig, _, _ = hidden("cubic_stiffness", "multisine", 7, seconds=8.0)
     heldout, _, _, _ = hidden("cubic_stiffness", "chirp", 7, seconds=8.0)
-    base, free, _ = base_system(record, "joint", rig.inertia)
-    bench = Workbench(record, base, free, None, beside=heldout)
-    refined = _Judge(bench, heldout, "joint", False, False, None, lambda fit: None)(bench.fit({}, patience=60))
+    own = fitter(record, rig.inertia, beside=heldout, window=None)
+    refined = _Judge(own, heldout, "joint", False, False, None)(own.fit_model({}))
     assert refined.heldout.rms > 10.0
     told(refined, record, heldout, tmp_path)
     fitted = jb.fit(record, inertia=rig.inertia, heldout=heldout, starts=1)

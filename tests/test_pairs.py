@@ -6,7 +6,7 @@ import itertools
 import numpy as np
 import pytest
 
-from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.criticism.model_fitter import ModelFitter
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import with_values
@@ -36,8 +36,8 @@ def test_the_true_model_of_two_effects_leaves_but_noise(name):
         record = Record(seen["t"], {"x": seen["x"], "z": seen["z"]}, confirmed=frozenset("txz"))
         base, free, _ = base_system(record, "joint", rig.inertia)
         true = with_values(base, {n: getattr(rig, n) for n in ("backlash", "stiffness", "damping")})
-        bench = Workbench(record, base, free, 0.2)
-        left[other] = bench.fit({n: laws[n](**v) for n, v in given.items()}, joint=true, patience=60).misfit
+        fitter = ModelFitter(record, true, free, 0.2)
+        left[other] = fitter.fit_model({n: laws[n](**v) for n, v in given.items()}).misfit
     assert all(misfit < 1.05 for misfit in left.values()), left
 
 

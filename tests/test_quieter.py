@@ -3,10 +3,8 @@
 import pytest
 
 from jaxbacklash.criticism.refine import _Judge
-from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.fitting.left_over import quieter_elsewhere
-from jaxbacklash.fitting.setup import base_system
-from tests.hidden import hidden
+from tests.hidden import fitter, hidden
 
 
 @pytest.mark.parametrize(
@@ -28,14 +26,12 @@ def test_a_held_out_record_whose_noise_was_right_is_predicted_to_it():
     record, rig, _, _ = hidden(None, "multisine", 7, seconds=8.0)
     heldout, other, _, _ = hidden(None, "chirp", 7, seconds=8.0)
     assert rig == other
-    base, free, _ = base_system(record, "joint", rig.inertia)
-    bench = Workbench(record, base, free, 0.2, beside=heldout)
-    bench.quieter(1.25)  # as if corners had been taken for noise
-    bench.noise_factor = 1.0
-    trial = bench.fit({}, tied=True, patience=60)
-    assert trial.misfit < 0.97  # so that a search would take it back
-    bench.quieter(0.8)
-    fit = _Judge(bench, heldout, "joint", False, False, None, lambda fit: None)(trial)
+    own = fitter(record, rig.inertia, beside=heldout)
+    own.quieter(1.25)  # as if corners had been taken for noise
+    own.noise_factor = 1.0
+    assert own.fit_model({}).misfit < 0.97  # so that a search would take it back
+    own.quieter(0.8)
+    fit = _Judge(own, heldout, "joint", False, False, None)(own.fit_model({}))
     assert fit.score.median == pytest.approx(1.0, abs=0.05)
     assert fit.heldout is not None
     assert fit.heldout.median == pytest.approx(1.0, abs=0.05)

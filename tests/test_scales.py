@@ -7,7 +7,6 @@ import pytest
 
 from jaxbacklash.effects import Contact, Damper, FlexibleLink, Lugre, Spring, Stribeck, TorqueRipple
 from jaxbacklash.effects.scales import FURTHEST, LABORATORY, natural_frequency
-from jaxbacklash.signals import choose_intervals, fit_spline, noise_of_speed
 from jaxbacklash.system import System
 from tests.independent.rigs import Rig
 from tests.independent.strangers import Scale
@@ -56,13 +55,3 @@ def test_without_a_motion_orders_still_spread_over_a_drives():
     orders = [g.N for g in TorqueRipple.guesses(joint(Rig(3.0, 0.025, 12000.0, 20.0)))]
     assert min(orders) == 4.0
     assert max(orders) > 0.9 * FURTHEST
-
-
-def test_noise_of_speed_is_how_far_a_smoothed_speed_is_off():
-    rng = np.random.default_rng(5)
-    t = np.arange(10_000) / 500.0
-    clean, noise = 0.03 * np.sin(2.0 * np.pi * 4.0 * t), 3e-4
-    values = clean + noise * rng.standard_normal(t.size)
-    smooth = fit_spline(t, values, t[0], 0.1 / choose_intervals(t, values, 0.1))
-    off = np.std(smooth(t, 1) - 0.03 * 8.0 * np.pi * np.cos(2.0 * np.pi * 4.0 * t))
-    assert noise_of_speed(t, values, noise) == pytest.approx(off, rel=0.15)

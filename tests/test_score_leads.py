@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from jaxbacklash.criticism.workbench import Workbench
 from jaxbacklash.effects import Dahl
 from jaxbacklash.fitting.compare import compare
 from jaxbacklash.fitting.handed_on import follows
@@ -13,19 +12,17 @@ from jaxbacklash.fitting.problem import Unknowns
 from jaxbacklash.fitting.score import score
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.parameters import with_values
-from tests.hidden import hidden, noisier
+from tests.hidden import fitter, hidden, noisier
 
 
 @pytest.fixture(scope="module")
 def fitted():
-    """A bench, the problem of a joint that rubs as Dahl says, and the unknowns of its fitted trajectory."""
+    """What fits a record, the problem of a joint that rubs as Dahl says, and the unknowns of its fitted trajectory."""
     record, rig, _, _ = hidden("dahl", "multisine", 21, seconds=8.0, sigma=2000.0, Fc=6.0)
-    base, free, _ = base_system(record, "joint", rig.inertia)
-    bench = Workbench(record, base, free, 0.2)
-    loose = bench.fit({"dahl": Dahl(6.0, 2000.0)}, patience=60)
-    trial = bench.fit(bench.effects(loose), joint=loose.system, tied=True, followed=True, patience=60)
-    problem, _ = bench.problem(bench.effects(trial), trial.system)
-    return bench, problem, Unknowns(np.zeros(problem.directions.shape[1]), trial.unknowns.starts, trial.unknowns.coefficients)
+    own = fitter(record, rig.inertia)
+    model = own.fit_model({"dahl": Dahl(6.0, 2000.0)})
+    problem, _ = own.problem(own.effects(model), model.system)
+    return own, problem, Unknowns(np.zeros(problem.directions.shape[1]), model.unknowns.starts, model.unknowns.coefficients)
 
 
 def jumping(unknowns, *windows, to=7000.0):
@@ -36,11 +33,11 @@ def jumping(unknowns, *windows, to=7000.0):
 
 @pytest.mark.parametrize("every", [1, 6], ids=["all", "a few"])
 def test_windows_whose_memory_jumps_begin_where_the_one_before_ends(fitted, every):
-    bench, problem, unknowns = fitted
-    right = score(problem, unknowns, bench.layout, group=bench.group)[0][0]
+    own, problem, unknowns = fitted
+    right = score(problem, unknowns, own.layout, group=own.group)[0][0]
     assert right.rms < 1.05
-    inner = [k for k in range(bench.layout.windows[0]) if k % bench.group][::every]
-    found = score(problem, jumping(unknowns, *inner), bench.layout, group=bench.group)[0][0]
+    inner = [k for k in range(own.layout.windows[0]) if k % own.group][::every]
+    found = score(problem, jumping(unknowns, *inner), own.layout, group=own.group)[0][0]
     assert found.rms == pytest.approx(right.rms, rel=0.02)
     assert found.median == pytest.approx(right.median, rel=0.02)
     if every == 1:  # a few are caught up with by one search alone, all of them by several

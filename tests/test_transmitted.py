@@ -4,12 +4,11 @@ import json
 import warnings
 from functools import lru_cache
 
-import equinox as eqx
 import numpy as np
 import pytest
 
 import jaxbacklash as jb
-from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.criticism.model_builder import ModelBuilder
 from jaxbacklash.effects import CoulombGround
 from jaxbacklash.fitting.estimates import judge
 from jaxbacklash.fitting.loop import read_loop, read_plateau, stop
@@ -144,10 +143,9 @@ def test_a_contact_between_the_samples_of_a_link_that_is_not_seen():
 def test_a_link_that_is_not_seen_has_no_new_start_in_every_window():
     record = record_of()
     system, names, _ = base_system(record, "joint", None)  # without the friction that holds the link
-    bench = Workbench(record, system, names, 0.2)
-    problem, _ = bench.problem({}, system)
-    whole = eqx.tree_at(lambda p: p.windows.tie, problem, bench.ties)
-    told = {t: score(whole, first_guess(whole), bench.layout, group=bench.group, through=t)[0][0] for t in (False, True)}
+    builder = ModelBuilder(record, system, names, 0.2)
+    problem, _ = builder.problem({}, system)
+    told = {t: score(problem, first_guess(problem), builder.layout, group=builder.group, through=t)[0][0] for t in (False, True)}
     assert told[True].rms > 3.0 * told[False].rms
     assert told[True].window_rms.shape == told[False].window_rms.shape
 

@@ -7,26 +7,22 @@ import numpy as np
 import pytest
 
 import jaxbacklash as jb
-from jaxbacklash.criticism.evidence import SURE, demanded, explained
-from jaxbacklash.criticism.quick_look import QuickLook
+from jaxbacklash.criticism.evidence import SURE, demanded, leaves_noise
 from jaxbacklash.criticism.unnamed import Unnamed, best_fall, glimpses, rhythm, unnamed
 from jaxbacklash.criticism.verdict import judge_rest
-from jaxbacklash.criticism.workbench import Workbench
-from jaxbacklash.fitting.setup import base_system
+from jaxbacklash.criticism.weak_form import WeakForm
 from jaxbacklash.records import Record
 from jaxbacklash.signals import Bump
 
-from .hidden import NOISE, hidden, noisier
+from .hidden import NOISE, fitter, hidden, noisier
 
 RHYTHM = {"A": 0.8, "w": 33.0, "phi": 0.4}
 
 
 def fitted(record, inertia, *names):
-    """A workbench, and the joint with some effects fitted to all of the record in one piece."""
-    base, free, _ = base_system(record, "joint", inertia)
-    bench = Workbench(record, base, free, 0.2)
-    effects = {n: bench.laws[n].guesses(base)[0] for n in names}
-    return bench, bench.fit(effects, bench.fit(effects, patience=60), tied=True, patience=60)
+    """What fits a record, and its joint with some effects fitted."""
+    own = fitter(record, inertia)
+    return own, own.fit_model({n: own.laws[n].guesses(own.base)[0] for n in names})
 
 
 @pytest.mark.parametrize(
@@ -38,12 +34,12 @@ def fitted(record, inertia, *names):
 )
 def test_what_no_law_has_is_seen_though_all_that_is_left_looks_like_noise(kind, values, beside, words):
     record, rig, _, _ = hidden(kind, "multisine", 3, **values)
-    bench, trial = fitted(noisier(record, 20.0, 4), rig.inertia, *beside)
-    assert explained(trial)
-    found = unnamed(bench, trial)
+    own, model = fitted(noisier(record, 20.0, 4), rig.inertia, *beside)
+    assert leaves_noise(model)
+    found = unnamed(own, model)
     assert found is not None
     assert found.words == words
-    assert found.fall > 4.0 * SURE * demanded(bench)
+    assert found.fall > 4.0 * SURE * demanded(own)
 
 
 @pytest.mark.slow
@@ -51,8 +47,8 @@ def test_what_it_promises_comes_true():
     """A user's own law of that form, fitted beside the model, takes off the sum of squares what was foretold."""
     record, rig, _, _ = hidden("speed_stiffness", "multisine", 3, s=700.0)
     record = noisier(record, 20.0, 4)
-    bench, trial = fitted(record, rig.inertia, "cubic_stiffness")
-    found = unnamed(bench, trial)
+    own, model = fitted(record, rig.inertia, "cubic_stiffness")
+    found = unnamed(own, model)
 
     class Stiffening(jb.AbstractEffect):
         s: float = jb.param(unit="N m s/rad^2", null=0.0, default=300.0)
@@ -61,10 +57,10 @@ def test_what_it_promises_comes_true():
         def torque(self, now):
             return -self.s * now.deflection * abs(now.dz)
 
-    base = eqx.tree_at(lambda s: s.effects, trial.system, {n: trial.system.effects[n] for n in trial.names})
+    base = eqx.tree_at(lambda s: s.effects, model.system, {n: model.system.effects[n] for n in model.names})
     fits = [
         jb.fit(record, system=base if law is None else base.with_effects(law), free=free, starts=1)
-        for law, free in ((None, trial.free), (Stiffening(), (*trial.free, "stiffening.s")))
+        for law, free in ((None, model.free), (Stiffening(), (*model.free, "stiffening.s")))
     ]
     assert all(f.tied for f in fits)
     assert 2.0 * (fits[0].cost - fits[1].cost) == pytest.approx(found.fall, rel=0.2)
@@ -77,41 +73,41 @@ def test_a_right_model_asks_for_none(kind, times):
     for seed in (5, 6, 7):
         record, rig, _, _ = hidden(None, kind, seed)
         for draw in range(4):
-            bench, trial = fitted(noisier(record, times, 100 * seed + draw), rig.inertia)
-            assert explained(trial)
-            assert unnamed(bench, trial) is None
+            own, model = fitted(noisier(record, times, 100 * seed + draw), rig.inertia)
+            assert leaves_noise(model)
+            assert unnamed(own, model) is None
 
 
 def test_friction_that_the_model_holds_is_no_unnamed_torque():
     record, rig, _, _ = hidden("coulomb_joint", "chirp", 4)
-    bench, trial = fitted(record, rig.inertia, "coulomb_joint")
-    assert explained(trial)
-    assert unnamed(bench, trial) is None
+    own, model = fitted(record, rig.inertia, "coulomb_joint")
+    assert leaves_noise(model)
+    assert unnamed(own, model) is None
 
 
 def test_nothing_is_told_of_a_model_that_leaves_more_than_noise():
     record, rig, _, _ = hidden("gravity", "multisine", 3)
-    bench, trial = fitted(record, rig.inertia)
-    assert not explained(trial)
-    assert unnamed(bench, trial) is None
+    own, model = fitted(record, rig.inertia)
+    assert not leaves_noise(model)
+    assert unnamed(own, model) is None
 
 
 def test_what_the_model_can_do_itself_is_no_glimpse():
     """Speed in the play is speed less speed in contact: no torque of its own beside contact damping and damping."""
     record, rig, _, _ = hidden("contact_damping", "multisine", 3)
-    bench, trial = fitted(record, rig.inertia, "contact_damping")
-    assert not any("speed in the play" in g.words for g in glimpses(bench, trial, bench.quick))
+    own, model = fitted(record, rig.inertia, "contact_damping")
+    assert not any("speed in the play" in g.words for g in glimpses(own, model, own.weak_form))
 
 
 def test_a_rhythm_is_found_at_its_frequency_and_phase():
     t = np.arange(5000) / 500.0
     rng = np.random.default_rng(1)
     x, z = 0.05 * np.sin(20.0 * t), 0.03 * np.sin(20.0 * t) + NOISE * rng.standard_normal(t.size)
-    look = QuickLook(Record(t, {"x": x, "z": z}))
+    form = WeakForm(Record(t, {"x": x, "z": z}))
     wave = 2.0 * np.cos(2.0 * np.pi * 7.32 * t + 0.7)
-    seen = look.average(wave)
+    seen = form.average(wave)
     rest = seen + 0.5 * seen.std() * rng.standard_normal(seen.size)
-    hertz, torque = rhythm(look, rest, lambda rows: rows)
+    hertz, torque = rhythm(form, rest, lambda rows: rows)
     assert hertz == pytest.approx(7.32, abs=0.5 / t[-1])
     assert np.corrcoef(torque, wave)[0, 1] > 0.98
     assert np.std(torque) == pytest.approx(np.std(wave), rel=0.15)
@@ -154,7 +150,7 @@ def test_the_verdict_says_what_goes_with_the_rest(names):
     joint = jb.base_motion_joint(inertia=3.0, backlash=0.02, stiffness=1e4, damping=20.0)
     final = SimpleNamespace(
         names=frozenset(names), free=(), system=joint.with_effects(*(jb.catalogue()[n]() for n in names)), misfit=1.005,
-        cost=1e4 * 1.005**2,
+        freedom=2e4,
     )  # fmt: skip
     scores = [SimpleNamespace(rms=rms, median=1.0, nrmse=0.01, observed="z") for rms in (1.2, 1.0)]
     fits = [SimpleNamespace(score=score, heldout=None) for score in scores]

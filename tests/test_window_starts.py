@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import jaxbacklash as jb
-from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.criticism.model_builder import ModelBuilder
 from jaxbacklash.effects import Contact, Damper
 from jaxbacklash.fitting.setup import base_system, first_guess, make_problem, read_through
 from jaxbacklash.fitting.shooting import linearise, predictions, shoot, weighed
@@ -47,30 +47,30 @@ def shown(problem, starts):
 )
 def test_another_sensor_shows_the_same_at_the_starts(observed, before, now):
     own, base_free = record(observed), ("backlash", "stiffness", "damping")
-    bench = Workbench(own, system(observed), base_free, 0.2)
-    was, new = (make_problem(system(observed, **e), bench.windows, base_free) for e in (before, now))
+    builder = ModelBuilder(own, system(observed), base_free, 0.2)
+    was, new = (make_problem(system(observed, **e), builder.windows, base_free) for e in (before, now))
     starts = np.asarray(first_guess(was).starts)
-    moved = read_through(bench.windows, starts, new.system, was.system)
+    moved = read_through(builder.windows, starts, new.system, was.system)
     assert shown(new, moved) == pytest.approx(shown(was, starts), abs=1e-12)
     assert np.max(np.abs(moved[0] - starts[0])) > 1e-3
     # And there and back again, speeds too.
-    assert read_through(bench.windows, moved, was.system, new.system) == pytest.approx(starts, abs=1e-12)
+    assert read_through(builder.windows, moved, was.system, new.system) == pytest.approx(starts, abs=1e-12)
 
 
 def test_speeds_are_read_through_a_gain():
     own = record("y")
-    bench = Workbench(own, system("y"), ("backlash", "stiffness", "damping"), 0.2)
-    plain, scaled = np.asarray(bench.windows.starts), system("y", sensor_gain=1.25)
-    assert read_through(bench.windows, plain, scaled) == pytest.approx(plain / 1.25, rel=1e-12)
+    builder = ModelBuilder(own, system("y"), ("backlash", "stiffness", "damping"), 0.2)
+    plain, scaled = np.asarray(builder.windows.starts), system("y", sensor_gain=1.25)
+    assert read_through(builder.windows, plain, scaled) == pytest.approx(plain / 1.25, rel=1e-12)
 
 
 def test_the_first_guess_shows_what_was_measured():
     own = record(offset=0.004)
-    bench = Workbench(own, system("z"), ("backlash", "stiffness", "damping"), 0.2)
-    problem = make_problem(system("z", sensor_offset=0.004), bench.windows, ("backlash", "stiffness", "damping"))
-    sampled = np.asarray(bench.windows.weight)[:, 0] > 0.0
+    builder = ModelBuilder(own, system("z"), ("backlash", "stiffness", "damping"), 0.2)
+    problem = make_problem(system("z", sensor_offset=0.004), builder.windows, ("backlash", "stiffness", "damping"))
+    sampled = np.asarray(builder.windows.weight)[:, 0] > 0.0
     seen = shown(problem, np.asarray(first_guess(problem).starts))[sampled]
-    assert seen == pytest.approx(np.asarray(bench.windows.measured)[sampled, 0], abs=2e-4)
+    assert seen == pytest.approx(np.asarray(builder.windows.measured)[sampled, 0], abs=2e-4)
 
 
 class AbstractBowed(AbstractEffect):  # no other test is to find it in the catalogue
@@ -84,21 +84,21 @@ class AbstractBowed(AbstractEffect):  # no other test is to find it in the catal
 
 def test_a_sensor_of_the_users_own_is_read_through_too():
     own = record("y")
-    bench = Workbench(own, system("y"), ("backlash", "stiffness", "damping"), 0.2)
+    builder = ModelBuilder(own, system("y"), ("backlash", "stiffness", "damping"), 0.2)
     bowed = System(INERTIA, Contact(PLAY, STIFFNESS), Damper(DAMPING), {"bowed": AbstractBowed(2.0)}, "y")
-    plain = np.asarray(bench.windows.starts)
-    moved = read_through(bench.windows, plain, bowed)
+    plain = np.asarray(builder.windows.starts)
+    moved = read_through(builder.windows, plain, bowed)
     assert moved[0] + 2.0 * moved[0] ** 2 == pytest.approx(plain[0], abs=1e-10)
     assert moved[1] * (1.0 + 4.0 * moved[0]) == pytest.approx(plain[1], rel=1e-9)
 
 
 def test_what_cannot_be_read_through_stays_where_it_was():
     own = record("y")
-    bench = Workbench(own, system("y"), ("backlash", "stiffness", "damping"), 0.2)
+    builder = ModelBuilder(own, system("y"), ("backlash", "stiffness", "damping"), 0.2)
     blind = System(INERTIA, Contact(PLAY, STIFFNESS), Damper(DAMPING), {"bowed": AbstractBowed(-1e9)}, "y")
-    plain = np.zeros_like(np.asarray(bench.windows.starts))
+    plain = np.zeros_like(np.asarray(builder.windows.starts))
     plain[0] = 0.5e-9  # the top of the bow, where it shows nothing of a motion
-    assert np.array_equal(read_through(bench.windows, plain, blind), plain)
+    assert np.array_equal(read_through(builder.windows, plain, blind), plain)
 
 
 @pytest.mark.slow
@@ -106,10 +106,10 @@ def test_a_motion_that_runs_away_where_nobody_measured_costs_nothing():
     """Behind the end of a record the base rests at once; a spring that hardens may throw its link out of all numbers there."""
     own = record(seconds=6.11)
     base, free, _ = base_system(own, "joint", INERTIA)
-    bench = Workbench(own, base, free, 0.2)
-    problem, _ = bench.problem({"cubic_stiffness": catalogue()["cubic_stiffness"](1e9)}, base)
+    builder = ModelBuilder(own, base, free, 0.2)
+    problem, _ = builder.problem({"cubic_stiffness": catalogue()["cubic_stiffness"](1e9)}, base)
     guess = first_guess(problem)
-    starts, seen = np.array(guess.starts), np.asarray(bench.windows.weight) > 0.0
+    starts, seen = np.array(guess.starts), np.asarray(builder.windows.weight) > 0.0
     empty = np.flatnonzero(~np.any(seen, axis=1))
     assert empty.size
     starts[:, empty] = [[1e3], [1e6]]

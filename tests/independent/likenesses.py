@@ -90,7 +90,7 @@ UNKNOWN_FRICTION: dict[str, Callable[[float], Callable[[float, float, float, flo
 
 
 def _axis(rng: np.random.Generator, size: float, friction: Callable[..., Any]) -> tuple[Record, dict[str, float]]:
-    """A carriage that follows trapezoids under position control by its encoder, the force held from sample to sample."""
+    """A carriage that follows trapezoids under position control, its force held from sample to sample."""
     rate, samples = 500.0, round(6000 * size)
     mass, dry = rng.uniform(50.0, 150.0), rng.uniform(15.0, 40.0)
     c, pull = rng.uniform(100.0, 300.0), rng.uniform(-0.3, 0.3) * dry
@@ -101,14 +101,14 @@ def _axis(rng: np.random.Generator, size: float, friction: Callable[..., Any]) -
     wanted = np.interp(t, np.concatenate([[0.0], np.cumsum(0.3 + np.abs(np.diff(ends)) / slowest)]), ends)
     wanted = np.convolve(np.pad(wanted, 20, mode="edge"), np.hanning(41) / np.sum(np.hanning(41)), mode="valid")
     stiff, damp = mass * (2.0 * np.pi * 6.0) ** 2, 1.4 * mass * 2.0 * np.pi * 6.0
-    y, v, before, seen, force = wanted[0], 0.0, wanted[0], np.empty(samples), np.empty(samples)
-    noise = 2e-6 * rng.standard_normal(samples)
+    y, v, before, places, force = wanted[0], 0.0, wanted[0], np.empty(samples), np.empty(samples)
     for n in range(samples):
-        seen[n] = y + noise[n]
+        places[n] = y
         ahead = (wanted[min(n + 1, samples - 1)] - wanted[max(n - 1, 0)]) * 0.5 * rate
-        force[n] = stiff * (wanted[n] - seen[n]) + damp * (ahead - (seen[n] - before) * rate)
-        before = seen[n]
+        force[n] = stiff * (wanted[n] - y) + damp * (ahead - (y - before) * rate)
+        before = y
         y, v = body.sample(n / rate, y, v, 1.0 / rate, lambda s, held=force[n]: held, fine=4)
+    seen = places + 2e-6 * rng.standard_normal(samples)
     values = {"inertia": mass, "damping": c, "coulomb_ground.Tc": dry, "preload.T0": pull}
     return Record(t, {"F": force, "y": seen}), values
 

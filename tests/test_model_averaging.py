@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 import jaxbacklash as jb
-from jaxbacklash.criticism.either import between, either
+from jaxbacklash.criticism.model_averaging import averaged, between
 from jaxbacklash.fitting.result import Fit
 
 JOINT = {"backlash": 0.02, "stiffness": 1e4, "damping": 5.0}
 
 
-def model(criterion, tied=True, **values):
-    return SimpleNamespace(value=values, criterion=criterion, misfit=1.0, correlation=1.0, tied=tied)
+def model(criterion, **values):
+    return SimpleNamespace(value=values, criterion=criterion, deflation=1.0)
 
 
 def test_the_spread_is_that_of_the_mixture():
@@ -36,7 +36,7 @@ def test_a_fit_allows_for_what_does_as_well(behind):
     own = np.diag([1e-6, 50.0, 0.02]) ** 2
     fit = Fit(system, tuple(JOINT), {}, (), None, (record,), (), (), own, 1, 1, True, 0.0, 0, None, "joint", False, False)
     kept, other = model(0.0, **JOINT), model(behind, **{**JOINT, "damping": 5.4})
-    found = either(fit, kept, [other])
+    found = averaged(fit, kept, [other])
     share = 1.0 / (1.0 + np.exp(0.5 * behind))
     assert found.parameters["damping"].stderr == pytest.approx(np.hypot(0.02, 0.4 * np.sqrt(share)))
     assert found.parameters["damping"].value == pytest.approx(5.0)
@@ -46,6 +46,5 @@ def test_a_fit_allows_for_what_does_as_well(behind):
 
 def test_without_others_that_compare_nothing_changes():
     fit, kept = object(), model(0.0, **JOINT)
-    assert either(fit, kept, []) is fit
-    assert either(fit, kept, [model(0.0, tied=False, **{**JOINT, "damping": 9.0})]) is fit
-    assert either(fit, kept, [model(0.0, **JOINT)]) is fit
+    assert averaged(fit, kept, []) is fit
+    assert averaged(fit, kept, [model(0.0, **JOINT)]) is fit

@@ -1,0 +1,38 @@
+"""The score test of absent laws: what it promises, and what promises nothing."""
+
+import numpy as np
+import pytest
+
+from jaxbacklash.criticism.candidates import _gain, score_test
+from jaxbacklash.criticism.evidence import gain
+
+from .hidden import fitter, hidden
+
+
+def test_a_candidate_whose_trajectory_runs_away_promises_nothing():
+    step, fall = _gain(np.array([[1.0, np.inf], [np.inf, 2.0]]), np.array([1.0, 1.0]), 1)
+    assert fall == 0.0
+    assert np.array_equal(step, np.zeros(2))
+
+
+def test_what_it_promises_of_a_weak_law_comes_true():
+    record, rig, _, _ = hidden("gravity", "multisine", 4, 6.0, G=0.3)
+    own = fitter(record, rig.inertia)
+    alone = own.fit_model({})
+    (promised,) = score_test(own, alone, ["gravity"])
+    found = own.fit_model({"gravity": promised.effect}, alone)
+    brought = gain(alone, found) + np.log(record.samples)
+    assert promised.gain == pytest.approx(brought, rel=0.2)
+    assert float(promised.effect.G) == pytest.approx(found.value["gravity.G"], rel=0.2)
+    assert 0.0 < promised.share <= 1.0
+
+
+def test_a_strength_that_physics_forbids_promises_nothing():
+    record, rig, _, _ = hidden("quadratic_drag", "multisine", 4, 6.0)
+    own = fitter(record, rig.inertia)
+    alone = own.fit_model({})
+    found = score_test(own, alone, sorted(own.static))
+    assert {c.name for c in found} == set(own.static)
+    for one in found:
+        assert one.gain >= 0.0
+        assert np.isfinite(one.gain)
