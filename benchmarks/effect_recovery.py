@@ -1,6 +1,6 @@
 """Which effects are found on records whose hidden ones are known: exact sets, false additions, intervals, by kind of record.
 
-    python -m benchmarks.effect_recovery [--noise 1 10 30] [--duration 20] [--engine windows] [--tiny] [--out FILE.json]
+    python -m benchmarks.effect_recovery [--noise 1 10 30] [--duration 20] [--tiny] [--out FILE.json]
 
 Every record has its own random rig, excitation (chirp, multisine, stepped or modulated sine), strengths, and on every
 third an encoder with counts of three noises; the simulation is non-smooth and shares nothing with the package. Each
@@ -22,9 +22,11 @@ from typing import Any
 import numpy as np
 
 from jaxbacklash.criticism.evidence import standard_errors
+from jaxbacklash.criticism.fitted_model import FittedModel
+from jaxbacklash.criticism.model_builder import strengths
+from jaxbacklash.criticism.model_fitter import ModelFitter
 from jaxbacklash.criticism.refine import refine
 from jaxbacklash.criticism.refinement import Refinement
-from jaxbacklash.criticism.workbench import Trial, Workbench, strengths
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.fitting.windows import observed_noise
 from jaxbacklash.mechanics import catalogue
@@ -91,24 +93,17 @@ def family(names: Any) -> frozenset[str]:
     return frozenset(HYSTERESIS.get(n, n) for n in names)
 
 
-def true_model(case: Case) -> Trial:
-    """The true model fitted, begun at the truth: its best trajectory found, or free windows where it has none."""
+def true_model(case: Case) -> tuple[ModelFitter, FittedModel]:
+    """The true model fitted, begun at the truth, and what fitted it."""
     base, free, _ = base_system(case.record, "joint", case.rig.inertia)
-    true = with_values(base, {n: getattr(case.rig, n) for n in JOINT})
-    bench = Workbench(case.record, base, free, 0.2)
+    fitter = ModelFitter(case.record, with_values(base, {n: getattr(case.rig, n) for n in JOINT}), free, 0.2)
     laws = catalogue()
-    effects = {n: laws[n](**v) for n, v in case.values.items()}
-    trial = bench.fit(effects, joint=true, patience=40)
-    if trial.misfit < 1.25:
-        # What free windows make of a weak effect may lead a trajectory astray, where a bound is that of another joint.
-        led = bench.fit(bench.effects(trial), trial, tied=True, patience=40)
-        trial = min(led, bench.fit(effects, joint=true, tied=True, patience=40), key=lambda way: way.cost)
-    return trial
+    return fitter, fitter.fit_model({n: laws[n](**v) for n, v in case.values.items()})
 
 
-def hidden_strengths(case: Case, trial: Trial) -> dict[str, float]:
-    """How strong each hidden effect is, in standard errors that the true model ``trial`` ends with (Cramer-Rao)."""
-    errors = dict(zip(trial.free, standard_errors(trial)))
+def hidden_strengths(case: Case, model: FittedModel) -> dict[str, float]:
+    """How strong each hidden effect is, in standard errors that the true model ends with (Cramer-Rao)."""
+    errors = dict(zip(model.free, standard_errors(model)))
     laws = catalogue()
     return {
         name: max(
@@ -122,13 +117,15 @@ def hidden_strengths(case: Case, trial: Trial) -> dict[str, float]:
     }  # fmt: skip
 
 
-def missed(case: Case, found: Refinement, trial: Trial) -> float | None:
-    """By how much the criterion (twice the cost, ln N a parameter) of the true model, begun at the truth, is below that of the
-    model found: where it is not, no search that goes by the evidence names the truth. None where only one is a trajectory, or the
+def missed(case: Case, found: Refinement, fitter: ModelFitter, true: FittedModel) -> float | None:
+    """By how much the criterion of the true model, begun at the truth, is below that of the model found, fitted in the same way
+    and both at the looser of their ties: where it is not, no search that goes by the evidence names the truth. None where the
     search has taken the noise for less, in units of which all this is."""
-    if trial.tied != found.fit.tied or not math.isclose(found.fit.noise[0], observed_noise(case.record)):
+    if not math.isclose(found.fit.noise[0], observed_noise(case.record)):
         return None
-    return 2.0 * (found.fit.cost - trial.cost) + math.log(case.record.samples) * (len(found.fit.free) - len(trial.free))
+    other = fitter.fit_model(dict(found.fit.system.effects))
+    tie = min(true.tie, other.tie)
+    return other.criterion_at(tie) - true.criterion_at(tie)
 
 
 def is_right(case: Case, found: Refinement) -> bool:
@@ -146,8 +143,8 @@ def judge(case: Case, found: Refinement, seconds: float) -> dict[str, Any]:
     unknown = bool(set(case.hidden) & set(OUTSIDE_CATALOGUE))
     exact = family(found.effects) == family(case.hidden)
     last = found.fit
-    trial = true_model(case) if case.hidden and not unknown else None
-    sure = trial is None or all(strength > SURE for strength in hidden_strengths(case, trial).values())
+    truly = true_model(case) if case.hidden and not unknown else None
+    sure = truly is None or all(strength > SURE for strength in hidden_strengths(case, truly[1]).values())
     return {
         "number": case.number, "hidden": list(case.hidden), "kind": case.kind, "found": list(found.effects),
         "alternatives": [list(a) for a in found.alternatives], "verdict": found.verdict.word,
@@ -155,7 +152,7 @@ def judge(case: Case, found: Refinement, seconds: float) -> dict[str, Any]:
         "here": found.verdict.here, "median": last.score.median, "held": None if last.heldout is None else last.heldout.median,
         "rms": [s.fit.score.rms for s in found.stages], "inside": inside, "intervals": intervals, "seconds": seconds,
         "joint": {n: found.fit.parameters[n].value for n in truth}, "truth": truth,
-        "identifiable": sure, "missed": None if trial is None or exact else missed(case, found, trial),
+        "identifiable": sure, "missed": None if truly is None or exact else missed(case, found, *truly),
     }  # fmt: skip
 
 
@@ -208,7 +205,6 @@ def main() -> None:
     parser.add_argument("--noise", type=float, nargs="+", default=[1.0, 10.0, 30.0])
     parser.add_argument("--duration", type=float, default=20.0)
     parser.add_argument("--only", type=int, nargs="*", default=None)
-    parser.add_argument("--engine", default="windows", help="of refine: windows or evidence")
     parser.add_argument("--tiny", action="store_true")
     parser.add_argument("--out", type=Path, default=None)
     options = parser.parse_args()
@@ -220,7 +216,7 @@ def main() -> None:
         for number in ([0] if options.tiny else numbers):
             case = make_case(number, noise, 8.0 if options.tiny else options.duration)
             begin = time.perf_counter()
-            found = refine(case.record, heldout=case.heldout, inertia=case.rig.inertia, engine=options.engine)
+            found = refine(case.record, heldout=case.heldout, inertia=case.rig.inertia)
             rows.append(judge(case, found, time.perf_counter() - begin))
             words = number, "+".join(case.hidden), "->", "+".join(found.effects), found.verdict.word
             print(*words, f"{rows[-1]['seconds']:.1f} s", flush=True)

@@ -3,7 +3,7 @@
     python -m benchmarks.noise_left [--records 80] [--seed 77] [--tiny]
 
 Clean records of random laboratory joints, four motions, four rates and lengths, noise of 3e-5 to 1e-3 rad, every third with a
-coarse encoder. Each is fitted with the joint alone, as one trajectory. A verdict of "incomplete" on one of them would be false.
+coarse encoder. Each is fitted with the joint alone. A verdict of "incomplete" on one of them would be false.
 The records come from a program that shares nothing with the package. It needs numba.
 """
 
@@ -13,8 +13,8 @@ import argparse
 
 import numpy as np
 
-from jaxbacklash.criticism.verdict import most_of_noise
-from jaxbacklash.criticism.workbench import Workbench
+from jaxbacklash.criticism.evidence import most_of_noise
+from jaxbacklash.criticism.model_fitter import ModelFitter
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.program import start
 from jaxbacklash.records import Record
@@ -35,9 +35,8 @@ def left(seed: int, number: int) -> tuple[float, float]:
     seen = measure(truth, rng, noise * rng.uniform(0.5, 2.0), noise, count)
     record = Record(seen["t"], {name: seen[name] for name in "xz"})
     base, free, _ = base_system(record, "joint", rig.inertia)
-    bench = Workbench(record, base, free, 0.2)
-    trial = bench.fit({}, bench.fit({}, patience=60), tied=True, patience=60)
-    return trial.misfit, most_of_noise(trial)
+    model = ModelFitter(record, base, free, 0.2).fit_model({})
+    return model.misfit, most_of_noise(model)
 
 
 def main() -> None:

@@ -45,10 +45,9 @@ def trial(
     of: Setting, name: str | None, errors: dict[str, float], multiple: float, duration: float, cheap: bool
 ) -> dict[str, Any]:
     """One record and what was found in it."""
-    from jaxbacklash.criticism.candidates import rank
+    from jaxbacklash.criticism.model_fitter import ModelFitter
     from jaxbacklash.criticism.refine import refine
-    from jaxbacklash.criticism.search import Search
-    from jaxbacklash.criticism.workbench import Workbench
+    from jaxbacklash.criticism.screening import screen
     from jaxbacklash.fitting.lengths import SCORE_WINDOW
     from jaxbacklash.fitting.setup import base_system
 
@@ -59,8 +58,8 @@ def trial(
     row: dict[str, Any] = {"effect": name, "seed": of.seed, "kind": of.kind, "multiple": multiple, "strength": strength}
     if cheap:
         system, free, _ = base_system(record, "joint", of.rig.inertia)
-        bench = Workbench(record, system, free, SCORE_WINDOW)
-        candidates = tuple(rank(bench, Search(bench).base()))
+        fitter = ModelFitter(record, system, free, SCORE_WINDOW)
+        candidates = tuple(screen(fitter, fitter.fit_model({})))
     else:
         found = refine(record, inertia=of.rig.inertia)
         row["found"], candidates = list(found.effects), found.stages[0].ranking
