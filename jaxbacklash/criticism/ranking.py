@@ -204,7 +204,7 @@ def judged(
 
 def rms_without(rms: float, share: float) -> float:
     """The error over noise once a share (0 to 1) of its excess over noise is removed."""
-    return float(np.sqrt(1.0 + (1.0 - share) * (rms**2 - 1.0)))
+    return float(np.sqrt(1.0 + (1.0 - share) * (rms**2 - 1.0))) if rms > 1.0 else rms
 
 
 def correlation(score: Score) -> float:
