@@ -1,6 +1,6 @@
 """Which effects are found on made-up records like measured ones that were published: named or said to be incomplete, and in time.
 
-    python -m benchmarks.real_likeness [--kinds pendulum two_modes] [--records 6] [--seed 0] [--engine evidence] [--limit 120]
+    python -m benchmarks.real_likeness [--kinds pendulum two_modes] [--records 6] [--seed 0] [--limit 120]
                                        [--out FILE.json] [--tiny]
 
 The kinds are those of `tests.independent.likenesses`, whose simulation shares nothing with the package. A record is right when
@@ -37,13 +37,13 @@ UNCOUNTED = 999_999
 """Seed of the record with which a kind begins."""
 
 
-def judged(kind: str, seed: int, size: float, engine: str) -> dict[str, Any]:
+def judged(kind: str, seed: int, size: float) -> dict[str, Any]:
     """What one record says about the method."""
     one = make_likeness(kind, seed, size)
     begin, used = time.perf_counter(), time.process_time()
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
-        found = refine(one.record, **one.how, engine=engine)
+        found = refine(one.record, **one.how)
     seconds, used = time.perf_counter() - begin, time.process_time() - used
     exact = one.hidden is not None and {SAME.get(n, n) for n in found.effects} == {SAME.get(n, n) for n in one.hidden}
     complete = found.verdict.complete
@@ -82,7 +82,7 @@ class Worker:
     def __init__(self) -> None:
         self.process: Any = None
 
-    def ask(self, asked: tuple[str, int, float, str], limit: float) -> dict[str, Any]:
+    def ask(self, asked: tuple[str, int, float], limit: float) -> dict[str, Any]:
         """The answer to one record, or what went wrong."""
         if self.process is None:
             spawn = multiprocessing.get_context("spawn")
@@ -143,7 +143,6 @@ def main() -> None:
     parser.add_argument("--records", type=int, default=6)
     parser.add_argument("--seed", type=int, default=0, help="the first record's")
     parser.add_argument("--only", type=int, nargs="*", default=None)
-    parser.add_argument("--engine", default="evidence")
     parser.add_argument("--limit", type=float, default=120.0)
     parser.add_argument("--cold", action="store_true")
     parser.add_argument("--out", type=Path, default=None)
@@ -154,12 +153,12 @@ def main() -> None:
     size, worker, rows = 0.3 if options.tiny else 1.0, Worker(), []
     for kind in kinds:
         if not (options.cold or options.tiny):
-            worker.ask((kind, UNCOUNTED, size, options.engine), 10.0 * options.limit)
+            worker.ask((kind, UNCOUNTED, size), 10.0 * options.limit)
         for seed in seeds:
-            rows.append(worker.ask((kind, seed, size, options.engine), options.limit))
+            rows.append(worker.ask((kind, seed, size), options.limit))
             print(line(rows[-1]), flush=True)
     worker.end()
-    print(f"\nengine {options.engine}\n{table(rows)}")
+    print(f"\n{table(rows)}")
     if options.out is not None:
         options.out.write_text(json.dumps(rows, indent=1), encoding="utf-8")
 
