@@ -7,7 +7,7 @@ from scipy.interpolate import BSpline
 from jaxbacklash.criticism.model_fitter import ModelFitter
 from jaxbacklash.fitting.levenberg import Levenberg, minimise
 from jaxbacklash.fitting.search import inverse_information
-from jaxbacklash.fitting.setup import base_system, first_guess
+from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
 from jaxbacklash.fitting.windows import LEAST_INTERVALS, cut
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import with_values
@@ -54,18 +54,17 @@ def test_a_slow_motion_gets_few_knots_and_a_small_fast_one_on_top_is_not_lost():
 
 def test_the_fitted_input_has_no_corner_where_no_knot_is_needed():
     rig, _, record = seen(0)
-    windows, _ = cut([record], 0.1)
+    windows, layout = cut([record], 0.1)
     length = windows.samples * record.dt
     needed = choose_intervals(record.t, record.channels["x"], length)
     assert needed <= LEAST_INTERVALS // 2
     assert windows.intervals == LEAST_INTERVALS
     base, free, _ = base_system(record, "joint", rig.inertia)
-    own = ModelFitter(record, base, free, 0.2)
-    problem, _ = own.problem({}, base)
+    problem = make_problem(base, windows, free)
     found = minimise(problem, first_guess(problem), Levenberg(limit=10)).value
-    moved = np.asarray(found.coefficients) - np.asarray(own.windows.coefficients)
-    assert np.max(np.abs(moved)) > 0.01 * own.layout.input_noise[0]
-    coefficients = np.asarray(found.coefficients)[: own.layout.windows[0]].ravel()
+    moved = np.asarray(found.coefficients) - np.asarray(windows.coefficients)
+    assert np.max(np.abs(moved)) > 0.01 * layout.input_noise[0]
+    coefficients = np.asarray(found.coefficients)[: layout.windows[0]].ravel()
     corners = np.diff(coefficients, DEGREE + 1)  # row i is the corner at knot i + 1
     parts = LEAST_INTERVALS // next(n for n in (1, 2, 4, 8) if n >= needed)
     at = np.arange(corners.size) + 1

@@ -1,6 +1,5 @@
 """What a law remembers goes on from window to window, even where windows are free to begin where their samples put the link."""
 
-import dataclasses
 from types import SimpleNamespace
 
 import equinox as eqx
@@ -8,9 +7,10 @@ import numpy as np
 import pytest
 
 from jaxbacklash.effects import BoucWen, Dahl, FlexibleLink, Lugre
+from jaxbacklash.fitting.fit import prepare
 from jaxbacklash.fitting.levenberg import Levenberg, minimise
 from jaxbacklash.fitting.search import freedom
-from jaxbacklash.fitting.setup import first_guess
+from jaxbacklash.fitting.setup import first_guess, make_problem
 from jaxbacklash.fitting.shooting import KEPT, _first_remembered, tie_weights
 from jaxbacklash.mechanics import canonical_name
 from jaxbacklash.parameters import values
@@ -26,8 +26,8 @@ def own():
 @pytest.fixture(scope="module")
 def free(own):
     """Dahl's law fitted to windows that are free to begin where their samples put the link: the problem, and its minimum."""
-    problem, _ = own.problem({"dahl": Dahl(1.0, 500.0)}, own.base)
-    problem = dataclasses.replace(problem, inner_tie=None)
+    windows, _, _ = prepare(own.base, [own.record], 0.2)
+    problem = make_problem(own.base.with_effects(Dahl(1.0, 500.0)), windows, (*own.base_free, "dahl.Fc", "dahl.sigma"))
     return problem, minimise(problem, first_guess(problem), Levenberg(limit=60))
 
 
@@ -52,12 +52,12 @@ def test_no_memory_leaves_its_reach(effect):
             assert abs(s) <= effect.reach * (1.0 + 1e-6)
 
 
-def test_free_windows_hand_on_what_is_remembered(own, free):
+def test_free_windows_hand_on_what_is_remembered(free):
     """The motion jumps as the noise has it, the memory hardly does; and the fit finds what was hidden."""
     problem, minimum = free
     assert float(problem.tie) == 0.0
     ends = np.asarray(minimum.stats["predicted"].end).T
-    n = windows_in_use(own)
+    n = int(problem.windows.used) - 1
     starts = np.asarray(minimum.value.starts)
     jumps = ends[:, : n - 1] - starts[:, 1:n]
     assert np.max(np.abs(jumps[2])) < 0.1

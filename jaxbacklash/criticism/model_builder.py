@@ -11,11 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from functools import cached_property
 
 import equinox as eqx
 import numpy as np
 
-from ..fitting.continuation import TIGHTEST
 from ..fitting.fit import prepare
 from ..fitting.left_over import quieter
 from ..fitting.levenberg import Levenberg, minimise
@@ -65,8 +65,8 @@ class ModelBuilder:
         self.outright = gripping() if record.kind == "transmitted" else ()
         self.gripped = with_friction(record, base, self.base_free, self.outright)
         self.pace = self.gripped or base
-        least = 0 if beside is None else prepare(self.pace, [beside], window, shooting=SHOOTING)[0].intervals
-        self.windows, self.layout, self.group = prepare(self.pace, [record], window, intervals=least, shooting=SHOOTING)
+        self.beside = beside
+        self.windows, self.layout, self.group = prepare(self.pace, [record], window, shooting=SHOOTING)
         self.noise_factor = 1.0
         self.laws: dict[str, type[AbstractEffect]]
         self.static: dict[str, type[AbstractEffect]]
@@ -109,7 +109,7 @@ class ModelBuilder:
         system = bare.with_effects(*quiet.values(), *effects.values())
         free = (*self.base_free, *(n for n in free_names(system, effects) if n.partition(".")[0] in effects), *extra)
         # A torque that is left out acts on the link, and jumps no state inside a law.
-        return replace(_pad(make_problem(system, self.windows, free)), inner_tie=np.asarray(TIGHTEST)), free
+        return _pad(make_problem(system, self.windows, free)), free
 
     def followed(self, effects: dict[str, AbstractEffect], joint: System, starts: np.ndarray) -> np.ndarray:
         """Starts (S, W) of windows: motion as in ``starts``, states of laws as they follow the measured motion."""
@@ -134,10 +134,18 @@ class ModelBuilder:
         self.layout = replace(self.layout, noise=tuple(factor * n for n in self.layout.noise))
 
     def scored(self, model: FittedModel) -> Score:
-        """What a model misses its record by, as every command tells it."""
+        """What a model misses its record by, as every command tells it: in the windows of a fit, which are longer."""
+        windows, layout, group = self.quoted
         problem, _ = self.problem(self.effects(model), model.system)
+        problem = eqx.tree_at(lambda p: p.windows, problem, windows.noisier(self.layout.noise[0] / layout.noise[0]))
         begin = begin_anew(problem, np.zeros(problem.directions.shape[1]))
-        return score(problem, begin, self.layout, group=self.group)[0][0]
+        return score(problem, begin, replace(layout, noise=self.layout.noise), group=group)[0][0]
+
+    @cached_property
+    def quoted(self) -> tuple[Windows, Layout, int]:
+        """The windows whose error is quoted, their layout, and how many shooting windows each has."""
+        least = 0 if self.beside is None else prepare(self.pace, [self.beside], self.window)[0].intervals
+        return prepare(self.pace, [self.record], self.window, intervals=least)
 
     def too_loud(self, model: FittedModel) -> float:
         """By which factor the noise is to be taken beside a model, 1 where that leaves as much."""

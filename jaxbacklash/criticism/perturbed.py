@@ -10,7 +10,6 @@ from __future__ import annotations
 import equinox as eqx
 import numpy as np
 
-from ..fitting.continuation import TIGHTEST
 from ..fitting.levenberg import Levenberg, minimise
 from ..fitting.problem import Problem, Unknowns
 from ..fitting.shooting import Prediction
@@ -72,9 +71,9 @@ def parabola(once: float, twice: float, share: float) -> tuple[float, float]:
 
 
 def as_it_ended(builder: ModelBuilder, model: FittedModel) -> tuple[Problem, Unknowns]:
-    """The problem of a tied model, and its unknowns where its fit had ended."""
+    """The problem of a model with the ties that it was fitted with, and its unknowns where its fit had ended."""
     problem, _ = builder.problem(builder.effects(model), model.system)
-    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIGHTEST))
+    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(float(model.tie)))
     return problem, Unknowns(np.zeros(problem.directions.shape[1]), model.unknowns.starts, model.unknowns.coefficients)
 
 

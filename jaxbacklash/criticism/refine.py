@@ -34,7 +34,6 @@ from .experiment import separate
 from .fitted_model import FittedModel
 from .laws_for import laws_for
 from .model_averaging import averaged
-from .model_builder import SHOOTING
 from .model_fitter import ModelFitter
 from .refinement import Refinement
 from .steps import Stage
@@ -186,6 +185,6 @@ class _Judge:
     def _predict(self, problem: Problem) -> Score:
         assert self.heldout is not None
         fitter = self.fitter
-        prepared = prepare(fitter.pace, [self.heldout], fitter.window, intervals=fitter.windows.intervals, shooting=SHOOTING)
+        prepared = prepare(fitter.pace, [self.heldout], fitter.window, intervals=fitter.quoted[0].intervals)
         known = fitter.noise_factor, fitter.layout.noise[0]
         return predict(lambda windows: eqx.tree_at(lambda p: p.windows, problem, windows), prepared, self.heldout, known)[0]

@@ -17,7 +17,7 @@ from ..fitting.levenberg import Levenberg, minimise
 from ..pointwise import along
 from ..system import System
 from .along_motion import Motion
-from .evidence import SURE, demanded, leaves_noise
+from .evidence import SURE, demanded, most_of_noise
 from .fitted_model import FittedModel
 from .model_builder import ModelBuilder
 from .perturbed import answered, as_it_ended, blurred, delayed, model_record, panel_edges, parabola
@@ -62,11 +62,11 @@ class Glimpse:
 
 
 def unnamed(builder: ModelBuilder, model: FittedModel) -> Unnamed | None:
-    """The torque outside the catalogue that a model of one trajectory clearly asks for, the clearest; None where there is none.
+    """The torque outside the catalogue that a model clearly asks for, the clearest; None where there is none.
 
     Of a model that leaves more than noise, and of a link that is not seen, nothing is told.
     """
-    if not model.tied or builder.weak_form.blind or not leaves_noise(model):
+    if builder.weak_form.blind or model.misfit > most_of_noise(model):
         return None
     problem, unknowns = as_it_ended(builder, model)
     ended = minimise(problem, unknowns, Levenberg(limit=1)).stats

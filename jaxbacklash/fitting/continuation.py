@@ -52,8 +52,6 @@ WAYS: tuple[tuple[float, ...], ...] = ((), (0.003, 0.001), (0.03, 0.01, 0.003, 0
 """Ranges over which softened friction turns, one after the other, as shares of the speed at which it slides: three ways."""
 NEAR_ENOUGH = 2.5
 """How many times the noise a run along the smoothed input may miss by for the input to be let free within its noise."""
-INNER = 1.0
-"""How many times as tightly as the link's motion the states of laws are tied that have no bound, up to `TIGHTEST`."""
 BETWEEN, LAST = 15, 40
 """Steps of a fit with ties looser than `SHARP`, and of one with those or tighter ones."""
 ROUGHLY, CLOSELY = 0.3, 1e-2
@@ -256,11 +254,8 @@ def log_evidence(problem: Problem, minimum: Minimum) -> float:
 
 
 def tied(problem: Problem, tie: float) -> Problem:
-    """The same problem with ties of another weight; what a law remembers jumps less than the link does."""
-    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(float(tie)))
-    if problem.inner_tie is None:
-        return problem
-    return eqx.tree_at(lambda p: p.inner_tie, problem, np.asarray(min(INNER * tie, TIGHTEST)))
+    """The same problem with ties of another weight."""
+    return eqx.tree_at(lambda p: p.tie, problem, np.asarray(float(tie)))
 
 
 def _softened(problem: Problem, speeds: Mapping[str, float]) -> Problem:

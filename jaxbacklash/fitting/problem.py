@@ -27,8 +27,7 @@ class Problem(eqx.Module):
     ``base`` (p,) all parameter values; ``directions`` (p, q) how they move with the free ones (column j: scale of free
     parameter j at its place); ``lower``, ``upper`` (q,) bounds in the same units; ``shrink`` (q,) True where a value must
     keep its sign, so that no step may take it below a third or above three times; ``tie`` overall weight of the ties;
-    ``active`` how many of the q directions are not zero, those first; ``inner_tie`` the weight of the ties of states
-    inside a law that have no reach, where that is another.
+    ``active`` how many of the q directions are not zero, those first.
     """
 
     windows: Windows
@@ -40,7 +39,6 @@ class Problem(eqx.Module):
     shrink: Array
     tie: Array
     active: Array
-    inner_tie: Array | None = None
 
     def parameters(self, theta: Array) -> Array:
         """All parameter values, shape (p,)."""

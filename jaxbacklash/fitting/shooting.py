@@ -185,8 +185,7 @@ def tie_weights(problem: Problem, states: int) -> Array:
     """How sharply each window's end is tied to the next window's start, (W, n) for ``states`` = n."""
     w = problem.windows
     # Other internal states have no common scale; a loose tie is enough for what they carry from window to window.
-    inner = problem.tie if problem.inner_tie is None else problem.inner_tie
-    sharp = jnp.concatenate([problem.tie * w.drop, inner * jnp.full(states - 2, w.drop[1])])
+    sharp = problem.tie * jnp.concatenate([w.drop, jnp.full(states - 2, w.drop[1])])
     reach = jnp.asarray(problem.system.reach)
     kept = jnp.maximum(problem.tie, 1.0) ** 2 * KEPT / reach
     return w.tie[:, None] * jnp.where(jnp.isinf(reach), sharp, kept)

@@ -108,7 +108,7 @@ def stretching(found: ChaosReport, *, ax: Where = None) -> list[Axes]:
     ...     x.append(3.9 * x[-1] * (1.0 - x[-1]))
     >>> found = jb.chaos(np.array(x), 0.01, clean=False)
     >>> jb.plot.stretching(found).get_ylabel()
-    'mean log distance'
+    'mean ln(distance / standard deviation)'
     """
     curve, dt = found.curve, found.dt
     axes = panels(ax, height=MEDIUM)
