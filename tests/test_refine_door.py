@@ -199,5 +199,5 @@ def test_page_of_refine_in_a_browser(hum, tmp_path):
     page = tmp_path / "report.html"
     page.write_text(text.replace("<head>", "<head>" + FRAMES), encoding="utf-8")
     tags = Tags(browse(page, tmp_path / "profile", "--virtual-time-budget=5000", "--dump-dom")).found
-    assert sum(tag == "svg" and a.get("role") == "img" for tag, a in tags) == text.count('<svg role="img"') >= 8
+    assert sum(tag == "svg" and a.get("role") == "img" for tag, a in tags) == text.count('<svg role="img"') >= 7
     assert any(a.get("id") == "look-closer" and int(a["data-drawn"]) > 1000 for _, a in tags)
