@@ -16,7 +16,7 @@ COMMANDS = {
     "refine": ["refine", "r.csv", "--inertia", "2", "--out", "o"],
     "chaos": ["chaos", "r.csv", "--out", "o"],
     "map": ["map", "--inverse-alpha", "1:5:600", "--zeta", "0.005:0.03:300", "--out", "m.nc"],
-    "simulate": ["simulate", "m.toml", "--duration", "1000", "--rate", "5000", "--out", "s.csv"],
+    "simulate": ["simulate", "m.toml", "--duration", "380", "--rate", "5000", "--out", "s.csv"],
 }
 
 
