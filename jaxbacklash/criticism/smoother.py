@@ -19,13 +19,13 @@ import numpy as np
 
 from ..compiled import kept_jit, lasting_jit
 from ..fitting.block_tridiagonal import Eliminated, eliminate, inverse_diagonal, solve_upper
+from ..fitting.input_spline import local_coefficients
 from ..fitting.problem import Problem, Unknowns
 from ..fitting.shooting import (
     Blocks,
     Prediction,
     Trajectory,
     assemble,
-    local_coefficients,
     predict,
     residuals,
     shoot,

@@ -14,8 +14,9 @@ import numpy as np
 from scipy import linalg
 
 from ..fitting import Fit
+from ..fitting.input_spline import local_coefficients
 from ..fitting.problem import Problem, Unknowns
-from ..fitting.shooting import local_coefficients, trajectory
+from ..fitting.shooting import trajectory
 from ..mechanics import Drive
 from ..parameters import unit_text
 from ..pointwise import along

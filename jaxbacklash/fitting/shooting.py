@@ -21,10 +21,10 @@ import jax
 import jax.numpy as jnp
 
 from ..mechanics import Drive
-from ..signals import DEGREE
 from ..solvers.substeps import run_panels
 from .active_laws import rebuild_active
 from .chunks import by_chunks
+from .input_spline import input_tangents, local_coefficients, spline_input
 from .problem import Problem, Unknowns
 from .tangents import drive, rows, trajectories
 from .windows import Windows
@@ -88,7 +88,7 @@ def trajectory(problem: Problem, theta: Array, start: Array, local: Array, t0: A
     """
     w = problem.windows
     system = problem.rebuild(theta)
-    along = drive(w, *_input(w, system.lag(), local), force)
+    along = drive(w, *spline_input(w, system.lag(), local), force)
     state = tuple(start[i] for i in range(start.shape[0]))
     end, states = run_panels(system, t0, state, along, w.panel, w.every, system.switches)
     times = t0 + w.panel * w.every * jnp.arange(w.samples)
@@ -112,7 +112,7 @@ def predictions(problem: Problem, unknowns: Unknowns) -> Prediction:
 def _predict(problem: Problem, theta: Array, starts: Array, local: Array) -> tuple[Prediction, Any, Array, Array]:
     w = problem.windows
     system = problem.rebuild(theta)
-    u, du = jax.vmap(lambda c: _input(w, system.lag(), c))(local)
+    u, du = jax.vmap(lambda c: spline_input(w, system.lag(), c))(local)
     end, states = trajectories(w, system, starts, u, du)
     kept = tuple(s[:, :: w.every] for s in states)
     at = jax.vmap(jax.vmap(lambda u, du, f: drive(w, u, du, f)))(u, du, w.force)
@@ -121,45 +121,6 @@ def _predict(problem: Problem, theta: Array, starts: Array, local: Array) -> tup
     motion = jax.vmap(jax.vmap(system.output))(times, kept, samples)
     measured = local @ w.shown.T if local.shape[1] else jnp.zeros((w.count, 0))
     return Prediction(motion, measured, end.T), states, u, du
-
-
-def _input(w: Windows, lag: Array | None, local: Array) -> tuple[Array, Array]:
-    if not w.intervals:
-        zero = jnp.zeros(w.basis.shape[1])
-        return zero, zero
-    if lag is None:
-        return w.basis[0] @ local, w.basis[1] @ local
-    # The measured channel lags: it shows the motion that an equally delayed input would have caused. The Taylor series
-    # of a quintic ends after six terms, so it is exact within a knot interval.
-    u = du = 0.0
-    factor: Any = 1.0
-    for order in range(DEGREE + 1):
-        u = u + factor * (w.basis[order] @ local)
-        if order < DEGREE:
-            du = du + factor * (w.basis[order + 1] @ local)
-        factor = -factor * lag / (order + 1)
-    return u, du
-
-
-def _input_tangents(problem: Problem, theta: Array, local: Array) -> tuple[Array, Array | None]:
-    w = problem.windows
-    lag = lambda theta: problem.rebuild(theta).lag()  # noqa: E731
-    delay = lag(theta)
-    if not w.intervals:
-        return jnp.zeros((2, w.basis.shape[1], 0)), None
-    basis = jnp.stack(_input(w, delay, jnp.eye(local.shape[1])))
-    if delay is None:
-        return basis, None
-    by_lag = jax.jvp(lambda tau: jnp.stack(_input(w, tau, local.T)), (delay,), (jnp.ones_like(delay),))[1]
-    return basis, jnp.swapaxes(by_lag, 1, 2)[..., None] * jax.jacfwd(lag)(theta)
-
-
-def local_coefficients(coefficients: Array) -> Array:
-    """Own coefficients and the first five of the next window, shape (W, m + 5)."""
-    if coefficients.shape[1] == 0:
-        return coefficients
-    following = jnp.concatenate([coefficients[1:], jnp.zeros_like(coefficients[:1])])
-    return jnp.concatenate([coefficients, following[:, :DEGREE]], axis=1)
 
 
 def residuals(problem: Problem, unknowns: Unknowns, predicted: Prediction | None = None) -> tuple[Array, Array, Array]:
@@ -290,7 +251,7 @@ def _meet(shared: tuple[Problem, Array], lead: tuple[Window, Shot]) -> Met:
     problem = eqx.tree_at(per_window, problem, own.data, is_leaf=lambda v: v is None)
     w = problem.windows
     n, q = own.start.shape[1], theta.shape[0]
-    basis, lagged = _input_tangents(problem, theta, own.local)
+    basis, lagged = input_tangents(problem, theta, own.local)
     motion_rows, end_rows = rows(w, rebuild_active(problem), theta, problem.active, shot.states, shot.u, shot.du, basis, lagged)
     tie_weight = tie_weights(problem, n)
     weighted = jnp.concatenate(

@@ -19,9 +19,10 @@ from ..effects import Contact
 from ..mechanics import Drive
 from ..system import System
 from .chunks import scan_used
+from .input_spline import local_coefficients
 from .levenberg import Levenberg, minimise
 from .problem import Problem, Unknowns
-from .shooting import local_coefficients, trajectory
+from .shooting import trajectory
 
 Array = Any
 TIE = 100.0

@@ -1,0 +1,64 @@
+"""The input of each shooting window from the coefficients of its quintic spline, and how it moves with them and with a lag.
+
+Base motion, or a smooth force; `jaxbacklash.fitting.shooting` runs the windows with it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+
+from ..signals import DEGREE
+from .problem import Problem
+from .windows import Windows
+
+Array = Any
+
+
+def spline_input(w: Windows, lag: Array | None, local: Array) -> tuple[Array, Array]:
+    """Input and its rate at a window's panel edges, (P + 1,) each, from its ``local`` coefficients (m + 5,).
+
+    ``lag`` [s] is that of the measured channel, None where no law makes it lag.
+    """
+    if not w.intervals:
+        zero = jnp.zeros(w.basis.shape[1])
+        return zero, zero
+    if lag is None:
+        return w.basis[0] @ local, w.basis[1] @ local
+    # The measured channel lags: it shows the motion that an equally delayed input would have caused. The Taylor series
+    # of a quintic ends after six terms, so it is exact within a knot interval.
+    u = du = 0.0
+    factor: Any = 1.0
+    for order in range(DEGREE + 1):
+        u = u + factor * (w.basis[order] @ local)
+        if order < DEGREE:
+            du = du + factor * (w.basis[order + 1] @ local)
+        factor = -factor * lag / (order + 1)
+    return u, du
+
+
+def input_tangents(problem: Problem, theta: Array, local: Array) -> tuple[Array, Array | None]:
+    """Derivatives of input and rate by the coefficients, (2, P + 1, m + 5), and by the parameters where a lag is one of them.
+
+    ``theta`` (q,) are the free parameters, ``local`` (W, m + 5) the coefficients that each window sees.
+    """
+    w = problem.windows
+    lag = lambda theta: problem.rebuild(theta).lag()  # noqa: E731
+    delay = lag(theta)
+    if not w.intervals:
+        return jnp.zeros((2, w.basis.shape[1], 0)), None
+    basis = jnp.stack(spline_input(w, delay, jnp.eye(local.shape[1])))
+    if delay is None:
+        return basis, None
+    by_lag = jax.jvp(lambda tau: jnp.stack(spline_input(w, tau, local.T)), (delay,), (jnp.ones_like(delay),))[1]
+    return basis, jnp.swapaxes(by_lag, 1, 2)[..., None] * jax.jacfwd(lag)(theta)
+
+
+def local_coefficients(coefficients: Array) -> Array:
+    """Own coefficients and the first five of the next window, shape (W, m + 5)."""
+    if coefficients.shape[1] == 0:
+        return coefficients
+    following = jnp.concatenate([coefficients[1:], jnp.zeros_like(coefficients[:1])])
+    return jnp.concatenate([coefficients, following[:, :DEGREE]], axis=1)
