@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import jaxbacklash as jb
-from jaxbacklash.cli import EFFECTS
+from jaxbacklash.commands.options import EFFECTS
 from tests.in_process import call
 
 ROOT = Path(__file__).resolve().parents[1]

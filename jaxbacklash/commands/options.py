@@ -1,0 +1,52 @@
+"""Options that several commands share, as typer reads them: `jaxbacklash.cli` declares its commands with them.
+
+Nothing here waits for a library: ``--help`` is quick.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ..errors import BadInput
+
+
+def there(found: Any) -> Any:
+    """The path or paths given, if there is something: a wrong name need not wait for libraries to load."""
+    from .doors import state_of
+
+    for path in found if isinstance(found, list) else [found]:
+        if path is not None and state_of(path) is None:
+            raise BadInput(f"{path}: found no such file, wanted a record.")
+    return found
+
+
+EFFECTS = (
+    "asymmetric_gap, asymmetric_stiffness, bouc_wen, contact_damping, coulomb_ground, coulomb_joint, cubic_stiffness, dahl, "
+    "flexible_link, gap_drift, gap_spring, gravity, hunt_crossley, learned_torque, linear_gravity, lugre, preload, "
+    "quadratic_drag, sensor_delay, sensor_gain, sensor_offset, stiffness_drift, stribeck, torque_ripple"
+)
+"""What ``jaxbacklash.catalogue()`` lists, for a help that waits for no library; a test compares the two."""
+MODELS = "joint (play, contact stiffness, damping), linear (a spring without play), free (damping alone), or a file FILE.toml"
+Model = Annotated[str, typer.Option("--model", help=f"What the fit begins with: {MODELS}")]
+Inertia = Annotated[
+    float | None,
+    typer.Option("--inertia", help="Inertia of the link about its joint [kg m^2; kg]; without it values are per unit inertia"),
+]
+Out = Annotated[Path | None, typer.Option("--out", help="Folder for result.json, model.toml and report.html")]
+Json = Annotated[bool, typer.Option("--json", help="Print the machine-readable result and nothing else")]
+Seed = Annotated[int, typer.Option("--seed", help="Seed of everything random")]
+NoSeed = Annotated[int, typer.Option("--seed", help="Changes nothing: this search draws nothing at random")]
+Window = Annotated[
+    float | None,
+    typer.Option(
+        "--window", help="Length of the windows whose prediction error is quoted [s]; default 0.2 s, or 32 samples if longer"
+    ),
+]
+Translation = Annotated[bool, typer.Option("--translation", help="The record is of a translating mass: m, kg, N")]
+Laws = Annotated[Path | None, typer.Option("--laws", help="A Python file with effect classes of your own")]
+Heldout = Annotated[
+    Path | None, typer.Option("--heldout", callback=there, help="A record to predict with the fitted parameters frozen")
+]
