@@ -37,16 +37,7 @@ class ExhaustedError(Exception):
 
 
 class ModelFitter(ModelBuilder):
-    """Fits models of a record: sets of effects beside the joint.
-
-    Parameters
-    ----------
-    record : what was measured
-    base : the joint with values to start from
-    base_free : its free parameters
-    window : length of the windows whose error is quoted [s]
-    beside : another record that will be predicted with the same program
-    """
+    """Fits models of a record: sets of effects beside the joint. Its parameters are those of `ModelBuilder`."""
 
     def __init__(
         self, record: Record, base: System, base_free: Iterable[str], window: float | None, beside: Record | None = None
