@@ -184,7 +184,9 @@ def table(part: str, columns: dict[str, list[dict[str, Any]] | None]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
-        "--records", type=int, default=len(FEW),
+        "--records",
+        type=int,
+        default=len(FEW),
         help=f"the first so many of the {len(NUMBERS)}; two unknown ones come with {len(FEW)}, {len(OUTSIDE)} with all",
     )
     parser.add_argument("--parts", nargs="+", choices=tuple(PARTS), default=list(PARTS))

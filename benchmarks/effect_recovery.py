@@ -213,7 +213,7 @@ def main() -> None:
     numbers = options.only if options.only is not None else range(len(SETS))
     for noise in options.noise[:1] if options.tiny else options.noise:
         rows = []
-        for number in ([0] if options.tiny else numbers):
+        for number in [0] if options.tiny else numbers:
             case = make_case(number, noise, 8.0 if options.tiny else options.duration)
             begin = time.perf_counter()
             found = refine(case.record, heldout=case.heldout, inertia=case.rig.inertia)

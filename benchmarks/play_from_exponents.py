@@ -133,8 +133,10 @@ def measured(map_: ExponentMap, options: argparse.Namespace) -> None:
     widths = [0.5 * (f.interval[1] - f.interval[0]) / p for p, f, *_ in rows if f.interval is not None]
     fits = [half for *_, half in rows if np.isfinite(half)]
     if widths and fits:
-        print(f"  half width: exponents {100 * np.median(widths):.2g} %, fit {100 * np.median(fits):.2g} %: "
-              f"{np.median(widths) / np.median(fits):.0f} times wider; {clock['series'] / (rigs * len(chosen)):.1f} s a series")
+        print(
+            f"  half width: exponents {100 * np.median(widths):.2g} %, fit {100 * np.median(fits):.2g} %: "
+            f"{np.median(widths) / np.median(fits):.0f} times wider; {clock['series'] / (rigs * len(chosen)):.1f} s a series"
+        )
     if options.fits:
         scaled = records[len(records) // 2]
         scaled = replace(scaled, channels=scaled.channels | {"z": GAIN * scaled.channels["z"]})

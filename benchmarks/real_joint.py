@@ -69,11 +69,9 @@ def main() -> None:
     records = of_folder(given.folder) if given.folder and not given.tiny else made_up()
     tried = [name for name in records if name in TRIED] or list(records)[:2]
     begun = time.perf_counter()
-    fit = jb.fit(
-        [records[name] for name in tried], effects=given.effects, translational=True, starts=1 if given.tiny else 2
-    )
+    fit = jb.fit([records[name] for name in tried], effects=given.effects, translational=True, starts=1 if given.tiny else 2)
     print(f"fitted to {' and '.join(tried)} in {time.perf_counter() - begun:.0f} s")
-    print("\n".join(str(fit).splitlines()[-3 - len(fit.parameters):]))
+    print("\n".join(str(fit).splitlines()[-3 - len(fit.parameters) :]))
     print(f"\n{'':30} {'play read off the':>19}    error, windows of 0.2 s")
     print(f"{'test':<30} {'loop, mm':>9} {'model, mm':>9} {'% of Tc':>8} {'med/noise':>10} {'rms/noise':>10}")
     for name, record in records.items():

@@ -80,9 +80,7 @@ def growth(case: Case) -> float:
     t = np.arange(0.0, case.seconds, 0.01)
     joint = RIG.inertia, RIG.backlash, RIG.stiffness, RIG.damping
     base = excitation(case.driven, case.seconds)
-    pair = [
-        events.simulate(events.Joint(*joint, base=base, y0=y0), t, rtol=1e-10, atol=1e-13)[0] for y0 in (0.0, 1e-9)
-    ]
+    pair = [events.simulate(events.Joint(*joint, base=base, y0=y0), t, rtol=1e-10, atol=1e-13)[0] for y0 in (0.0, 1e-9)]
     return float(np.max(np.abs(pair[1] - pair[0])[-100:]) / 1e-9)
 
 

@@ -149,9 +149,7 @@ def draw(folder: Path, tangent: np.ndarray, rows: list[Any], rate: float) -> Non
     bars.savefig(folder / "table_2.png", dpi=150)
     delay = int(np.median([f.delay.samples for *_, f in rows]))
     shown = 60 * round(rate / FREQUENCY)
-    panels = [
-        (f"{d:.2f}°", np.degrees(z[:shown]), word == "chaotic") for d, (_, z, _, _), word in zip(degrees, rows, words)
-    ]
+    panels = [(f"{d:.2f}°", np.degrees(z[:shown]), word == "chaotic") for d, (_, z, _, _), word in zip(degrees, rows, words)]
     on_page(phase_plots, panels, delay).savefig(folder / "figure_16.png", dpi=150)
     _, noisy, truth, found = next(row for row in rows if row[0] == 3)
     if found.cleaned is not None and found.cleaned_dimension is not None:
@@ -165,9 +163,9 @@ def draw(folder: Path, tangent: np.ndarray, rows: list[Any], rate: float) -> Non
         on_page(cleaned_signal, at, *three).savefig(folder / "figure_17.png", dpi=150)
         raw, after = found.raw_dimension, found.cleaned_dimension
         both = min(raw.dimensions.size, after.dimensions.size)
-        on_page(
-            cao_before_and_after, raw.dimensions[:both], raw.e1[:both], after.e1[:both], (raw.cao, after.cao)
-        ).savefig(folder / "figure_18.png", dpi=150)
+        on_page(cao_before_and_after, raw.dimensions[:both], raw.e1[:both], after.e1[:both], (raw.cao, after.cao)).savefig(
+            folder / "figure_18.png", dpi=150
+        )
     print(f"written: {folder}")
 
 

@@ -52,9 +52,7 @@ def dataframe(
     return frame
 
 
-def dataset(
-    variables: Mapping[str, tuple[Any, Any, str]], coordinates: Mapping[str, tuple[Any, str]], **about: Any
-) -> Any:
+def dataset(variables: Mapping[str, tuple[Any, Any, str]], coordinates: Mapping[str, tuple[Any, str]], **about: Any) -> Any:
     """An `xarray.Dataset`.
 
     Parameters

@@ -9,9 +9,7 @@ from .excitation import Harmonic
 from .system import System
 
 
-def base_motion_joint(
-    inertia: float, backlash: float, stiffness: float, damping: float, *, width: float = 0.0
-) -> System:
+def base_motion_joint(inertia: float, backlash: float, stiffness: float, damping: float, *, width: float = 0.0) -> System:
     r"""A link behind a joint with play whose base moves (paper, 3.1-3.2): :math:`J\ddot y = -k\delta(z) - c\dot z`.
 
     inertia [kg m^2], backlash the total play [rad], stiffness [N m/rad], damping [N m s/rad], width of the smoothed
@@ -52,9 +50,7 @@ def free_axis(inertia: float, damping: float, *, observed: str = "y") -> System:
     return System(inertia, None, Damper(damping), observed=observed)
 
 
-def forced_oscillator(
-    mass: float, k0: float, damping: float, half_play: float, *, k1: float = 0.0, width: float = 0.0
-) -> System:
+def forced_oscillator(mass: float, k0: float, damping: float, half_play: float, *, k1: float = 0.0, width: float = 0.0) -> System:
     r"""The force-driven oscillator of Table 1: :math:`m\ddot x + c\dot x + k_1 x + k_0\delta(x) = A\cos\omega t` (2.13).
 
     ``half_play`` is the paper's x_0 [m], half of the total play that `Contact` holds.

@@ -107,9 +107,7 @@ class System(eqx.Module):
 
     def _rates(self, now: Instant, state: State, drive: Drive) -> State:
         torque, _ = self.torques(now, state)
-        hidden = tuple(
-            r for name, own in self._own_states(state) for r in self.effects[name].rate(now.seen_by(own))
-        )
+        hidden = tuple(r for name, own in self._own_states(state) for r in self.effects[name].rate(now.seen_by(own)))
         return (state[1], (drive.force + torque) / self.inertia, *hidden)
 
     def transmitted(self, t: Scalar, state: State, drive: Drive, side: Scalar | None = None) -> Scalar:
@@ -150,9 +148,7 @@ class System(eqx.Module):
         drifted: Any = 1.0
         for name in sorted(self.effects):
             drifted = drifted * self.effects[name].drift(t)
-        return Instant(
-            t, y, dy, drive.x, drive.dx, z, dz, deflection, contact, stiffness, self.inertia, drifted=drifted
-        )
+        return Instant(t, y, dy, drive.x, drive.dx, z, dz, deflection, contact, stiffness, self.inertia, drifted=drifted)
 
     def torques(self, now: Instant, state: State) -> tuple[Scalar, Scalar]:
         """All torque on the link but the driving force, and the part of it that acts through the joint [N m]."""

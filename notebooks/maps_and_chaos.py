@@ -155,8 +155,13 @@ plt.show()
 real = joint.with_effects(jb.Gravity(28.0), jb.CubicStiffness(3e7), jb.CoulombJoint(1.0))
 values = np.radians(np.linspace(2.0, 5.0, 3 if tiny else 60))
 swept = jb.dynamics.bifurcation(
-    jb.dynamics.NamedParameters(real, shaken), "drive.amplitude", values,
-    settle=10 if tiny else 60, samples=20, start_periods=30 if tiny else 200, starts=[(0.0, 0.0), (0.02, 0.0)],
+    jb.dynamics.NamedParameters(real, shaken),
+    "drive.amplitude",
+    values,
+    settle=10 if tiny else 60,
+    samples=20,
+    start_periods=30 if tiny else 200,
+    starts=[(0.0, 0.0), (0.02, 0.0)],
 )
 print(swept.attrs["solver"])
 jb.plot.bifurcation(swept, degrees=True, play=(-0.013, 0.013))

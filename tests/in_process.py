@@ -40,7 +40,6 @@ class Outcome:
         return (self.err.strip().splitlines() or [""])[-1]
 
 
-
 def call(words: Sequence[str], folder: Path) -> Outcome:
     """Run ``jaxbacklash WORDS`` as if typed in ``folder``."""
     from jaxbacklash import cli

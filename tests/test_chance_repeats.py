@@ -35,7 +35,6 @@ def test_more_repeats_than_chance_brings_are_stale(significant):
     assert np.isin(rows, stale_rows(Channel(z))).mean() > 0.95
 
 
-
 @pytest.mark.parametrize("significant", [True, False], ids=["digits", "decimals"])
 @pytest.mark.parametrize("digits", [3, 4, 6])
 @pytest.mark.parametrize("tail", [0.0, 0.002, 0.2])

@@ -37,7 +37,7 @@ def test_a_wrong_answer_ends_in_a_sentence_and_an_error(call, monkeypatch):
 
 
 def test_an_extra_names_what_it_lacks(monkeypatch):
-    told = ['h5py>=3.10; extra == "io"', 'no-such-library[all]>=1; extra == "io"', 'numpy>=1.26', 'zarr>=3; extra == "sweep"']
+    told = ['h5py>=3.10; extra == "io"', 'no-such-library[all]>=1; extra == "io"', "numpy>=1.26", 'zarr>=3; extra == "sweep"']
     monkeypatch.setattr(importlib.metadata, "requires", lambda name: told)
     assert check.missing("io") == ["no-such-library"]
     assert check.missing("nothing") == []

@@ -42,9 +42,7 @@ def test_what_is_not_counted_has_no_count():
 def fitted(record, noise):
     play = SimpleNamespace(value=RIG.backlash)
     system = SimpleNamespace(observed="z")
-    return SimpleNamespace(
-        records=(record,), noise=(noise,), parameters={"backlash": play}, system=system, translational=False
-    )
+    return SimpleNamespace(records=(record,), noise=(noise,), parameters={"backlash": play}, system=system, translational=False)
 
 
 @pytest.mark.parametrize(

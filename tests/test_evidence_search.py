@@ -52,4 +52,3 @@ def test_friction_that_gives_is_named():
 def test_a_torque_outside_the_catalogue_is_left_out_and_said():
     _, model, *_ = searched("unknown_disturbance", "multisine", 7, 10.0)
     assert not model.tied
-

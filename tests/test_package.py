@@ -230,8 +230,6 @@ def test_readme_code_runs(tmp_path):
         shutil.copy(ROOT / "jaxbacklash" / "data" / f"demo_{shipped}.csv", tmp_path / f"{name}.csv")
     for number, block in enumerate(blocks):
         (tmp_path / f"block{number}.py").write_text(f"import sys\nsys.path.insert(0, {str(ROOT)!r})\n{block}")
-        done = subprocess.run(
-            [sys.executable, f"block{number}.py"], cwd=tmp_path, capture_output=True, text=True, timeout=300
-        )
+        done = subprocess.run([sys.executable, f"block{number}.py"], cwd=tmp_path, capture_output=True, text=True, timeout=300)
         assert done.returncode == 0, done.stderr
         assert "gravity" in done.stdout

@@ -44,9 +44,7 @@ def assert_same(record: Record, other: Record, rtol: float = 0.0) -> None:
 
 def test_mapped_names_free_the_column_of_that_name(tmp_path):
     table = motion()
-    path = write_table(
-        tmp_path / "rec.csv", {"time": table["t"], "x": table["z"], "enc 1": table["x"], "z": 0 * table["x"]}
-    )
+    path = write_table(tmp_path / "rec.csv", {"time": table["t"], "x": table["z"], "enc 1": table["x"], "z": 0 * table["x"]})
     record = read_record(path, columns=parse_columns("t=time, x=enc 1,z=x"))
     assert_same(record, record_of())
     assert record.extras.keys() == {"z (unmapped)"}
@@ -61,15 +59,11 @@ def test_units_and_scales_multiply(tmp_path):
         scales=parse_scales("z=2"),
     )
     assert record.kind == "base_motion"
-    assert_same(
-        record.replace(T=table["x"]), record_of(**{name: motion()[name] for name in "xz"} | {"T": table["x"]}), 1e-12
-    )
+    assert_same(record.replace(T=table["x"]), record_of(**{name: motion()[name] for name in "xz"} | {"T": table["x"]}), 1e-12)
     np.testing.assert_allclose(record.channels["T"], 4448.2216152605 * table["T"])
 
 
-@pytest.mark.parametrize(
-    ("text", "unit"), [("Nm", "N m"), ("N*m", "N m"), ("N.m", "N m"), ("kN m", "kN m"), ("Nmm", "N mm")]
-)
+@pytest.mark.parametrize(("text", "unit"), [("Nm", "N m"), ("N*m", "N m"), ("N.m", "N m"), ("kN m", "kN m"), ("Nmm", "N mm")])
 def test_a_torque_has_several_spellings(text, unit):
     assert parse_units(f"F={text}") == {"F": unit}
 

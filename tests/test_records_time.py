@@ -47,10 +47,7 @@ def test_rounding_of_an_even_clock_is_seen_through(rounded, rate):
     steps = np.diff(grid)
     assert np.ptp(steps) <= 2e-6 / rate + 4 * np.spacing(grid[-1])
     assert (grid.size - 1) / (grid[-1] - grid[0]) == pytest.approx(rate, rel=1e-5)
-    assert (
-        np.abs(grid - rounded).max()
-        <= 1.1 * np.abs(clock(rounded.size, rate, rounded[0]) - rounded).max() + 1e-3 / rate
-    )
+    assert np.abs(grid - rounded).max() <= 1.1 * np.abs(clock(rounded.size, rate, rounded[0]) - rounded).max() + 1e-3 / rate
 
 
 def lost_row(t, row):

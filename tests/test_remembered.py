@@ -109,8 +109,7 @@ def test_what_is_handed_on_is_no_freedom(own):
     """A flexible link has two numbers to choose in every free window, which count; friction's memory has one in the record."""
     n = windows_in_use(own)
     plain, rubbing, bending = (
-        freedom(own.problem(effects, own.base)[0])
-        for effects in ({}, {"dahl": Dahl()}, {"flexible_link": FlexibleLink()})
+        freedom(own.problem(effects, own.base)[0]) for effects in ({}, {"dahl": Dahl()}, {"flexible_link": FlexibleLink()})
     )
     assert plain - rubbing == 1.0
     assert plain - bending == 2.0 * n

@@ -19,9 +19,7 @@ AMPLITUDES = np.radians([1.34, 2.07, 2.68, 3.41, 3.65, 3.78, 4.87, 5.73])
 
 def joint(play_deg=1.5, gravity=-60.0, zeta=0.02):
     omega = 2 * np.pi * 11.0
-    return jb.two_link(
-        INERTIA, np.radians(play_deg), INERTIA * omega**2, 2 * zeta * INERTIA * omega, gravity, linearised=True
-    )
+    return jb.two_link(INERTIA, np.radians(play_deg), INERTIA * omega**2, 2 * zeta * INERTIA * omega, gravity, linearised=True)
 
 
 def made_up(exponent, axes=None, low=0.5, high=5.0):

@@ -86,9 +86,7 @@ def test_the_same_minimum_with_and_without_it(monkeypatch):
     assert (found.agreeing, found.tried) == (whole.agreeing, whole.tried) == (3, 3)
     assert found.cost == pytest.approx(whole.cost, abs=1e-2)
     errors = np.sqrt(np.diag(whole.covariance))
-    ends = [
-        dict(zip(values(system), np.asarray(one.problem.parameters(one.unknowns.theta)))) for one in (found, whole)
-    ]
+    ends = [dict(zip(values(system), np.asarray(one.problem.parameters(one.unknowns.theta)))) for one in (found, whole)]
     for name, truth, error in zip(NAMES, (0.02618, 13000.0, 12.0), errors):
         assert abs(ends[0][name] - ends[1][name]) < 0.05 * error
         assert abs(ends[0][name] - truth) < 4.0 * error

@@ -43,10 +43,7 @@ def simulink(path):
 
 def controller(path):
     """A robot controller's log: semicolons, decimal commas, milliseconds, degrees in a row of units, a footer."""
-    rows = [
-        f"{1e3 * t:.1f};{x:.6f};{y:.6f};0".replace(".", ",")
-        for t, x, y in zip(T, np.degrees(X), np.degrees(X + Z))
-    ]
+    rows = [f"{1e3 * t:.1f};{x:.6f};{y:.6f};0".replace(".", ",") for t, x, y in zip(T, np.degrees(X), np.degrees(X + Z))]
     head = ["Controller KX-4;Trace 17", "Program;BACKLASH_TEST", "Zeit;Motor_A1;Abtrieb_A1;Status", "ms;deg;deg;-"]
     path.write_text(PAGE([*head, *rows, "Ende der Aufzeichnung"]) + "\n", encoding="cp1252")
 

@@ -36,6 +36,7 @@ def items(rows: list[Any], rate: float, tiny: bool) -> list[Item]:
 
 def figure_17(noisy: np.ndarray, truth: np.ndarray, cleaned: dict[str, np.ndarray], scale: float, rate: float) -> Item:
     """A stretch before and after."""
+
     def left(series: np.ndarray) -> float:
         return float(np.sqrt(np.mean((series - truth) ** 2)))
 

@@ -181,10 +181,10 @@ class Problem:
         self.first_guess[self.at_coefficients] = self.coefficients
         own = np.vstack([np.full((3, w), [[0], [1], [2]]), self.at_starts, self.at_local]).T
         ties = [np.column_stack([own[:-1], self.at_starts[i, 1:]]) for i in range(2)]
-        at_base = self.at_local[self.first[:-1 : self.panels, None] + np.arange(6)].transpose(0, 2, 1)
+        at_base = self.at_local[self.first[: -1 : self.panels, None] + np.arange(6)].transpose(0, 2, 1)
         columns = np.broadcast_to(own, (self.samples, *own.shape)), at_base, self.at_coefficients, *ties
         self.columns = np.concatenate([c.ravel() for c in columns]).astype(np.int32)
-        values = self.basis[0, :-1 : self.panels, None, :] * self.base_weight[:, :, None]
+        values = self.basis[0, : -1 : self.panels, None, :] * self.base_weight[:, :, None]
         self.constant = np.append(values, np.full(self.at_coefficients.size, self.whisper))
 
     def _cut(self, values):

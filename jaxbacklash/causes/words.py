@@ -71,9 +71,11 @@ def _scale(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str,
 
 def _sign(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str, str, str]:
     other = fit.records[0].input_name
-    return f"{kind.channel} has the other sign than {other}: one of the two was measured the other way round", (
-        f"--scale {kind.channel}=-1"
-    ), ""
+    return (
+        f"{kind.channel} has the other sign than {other}: one of the two was measured the other way round",
+        (f"--scale {kind.channel}=-1"),
+        "",
+    )
 
 
 def _inertia(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str, str, str]:

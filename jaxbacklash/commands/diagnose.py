@@ -69,7 +69,10 @@ def run(
             write_text(
                 folder / "model.toml",
                 dump_model(
-                    fit.system, translational=translational, per_inertia=fit.per_inertia, heading=heading,
+                    fit.system,
+                    translational=translational,
+                    per_inertia=fit.per_inertia,
+                    heading=heading,
                     between=between([record]),
                     known_noise=fit.known_noise,
                 ),

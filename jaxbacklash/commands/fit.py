@@ -74,8 +74,12 @@ def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, *, silent
         write_text(
             folder / "model.toml",
             dump_model(
-                found.system, translational=found.translational, per_inertia=found.per_inertia, heading=heading,
-                between=between(found.records), known_noise=found.known_noise,
+                found.system,
+                translational=found.translational,
+                per_inertia=found.per_inertia,
+                heading=heading,
+                between=between(found.records),
+                known_noise=found.known_noise,
             ),
         )
         fit_report(found, result, folder / "report.html")

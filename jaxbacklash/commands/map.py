@@ -117,12 +117,11 @@ def compile_beside_imports(wanted: Request, aside: ThreadPoolExecutor, keeps_til
         importlib.import_module("zarr")
         importlib.import_module("h5netcdf")
     from ..report import map_report as map_report
+
     compiling.result()
 
 
-def read_request(
-    case: int, given: dict[str, str | None], periods: int, skip: int, samples: int | None, start: str
-) -> Request:
+def read_request(case: int, given: dict[str, str | None], periods: int, skip: int, samples: int | None, start: str) -> Request:
     """The request that the options describe; a parameter with one value is a constant."""
     axes: dict[str, np.ndarray] = {}
     fixed: dict[str, np.ndarray] = {}

@@ -180,9 +180,7 @@ def _build(kind: str, p: dict[str, float], as_force: bool, duration: float, rng:
         amplitudes = np.full(count, level * np.sqrt(2.0 / count))
         return Multisine(amplitudes, omegas, rng.uniform(0, 2 * np.pi, count), as_force=as_force)
     count = max(2, round(p["steps"]))
-    return SteppedSine(
-        np.full(count, level), np.linspace(p["low"], p["high"], count), _f(duration / count), as_force=as_force
-    )
+    return SteppedSine(np.full(count, level), np.linspace(p["low"], p["high"], count), _f(duration / count), as_force=as_force)
 
 
 def _f(value: float) -> Any:

@@ -60,9 +60,7 @@ def net_gain(candidate: Candidate, fitter: ModelFitter) -> float:
     return candidate.gain - candidate.parameters * float(np.log(fitter.record.samples))
 
 
-def _remembering(
-    fitter: ModelFitter, model: FittedModel, absent: Sequence[str], static: Sequence[Candidate]
-) -> list[Candidate]:
+def _remembering(fitter: ModelFitter, model: FittedModel, absent: Sequence[str], static: Sequence[Candidate]) -> list[Candidate]:
     """Laws that remember, those left out that bring no more than a simpler law that they come near to.
 
     Their shapes are tuned on the measured motion beside the model, without what would give way to them; what they bring is told

@@ -106,9 +106,7 @@ def basins(
     one = np.ones(grid[0].size)
     system, drive = family.build({name: value * one for name, value in given.items()})
     plan = Plan(periods, max(0, min(periods // 2, periods - max(100, samples))), samples)
-    found, _ = follow(
-        system, drive, grid[0].ravel(), grid[1].ravel(), plan, period=period, exact=exact, panels=panels
-    )
+    found, _ = follow(system, drive, grid[0].ravel(), grid[1].ravel(), plan, period=period, exact=exact, panels=panels)
     p, v, exponent = (np.asarray(a) for a in (found.p, found.v, found.lyapunov))
     scale = np.array([float(np.max(size)) for size in sizes(system)])
     repeats = periodicity(p, v, exponent, np.asarray(found.stderr), scale=scale[0], speed=scale[1])

@@ -93,9 +93,7 @@ def bifurcation(
         found[f"{way}_period"] = ((name,), periodicity(z, dz, exponent, error, scale=half, speed=speed))
     plan = Plan(start_periods, max(0, start_periods - max(100, samples)), samples)
     lanes = family.build({name: np.tile(values, len(begun))})
-    many, solver = follow(
-        *lanes, begun[:, 0].ravel(), begun[:, 1].ravel(), plan, period=period, exact=exact, panels=panels
-    )
+    many, solver = follow(*lanes, begun[:, 0].ravel(), begun[:, 1].ravel(), plan, period=period, exact=exact, panels=panels)
     shape = (len(begun), values.size)
     repeats = periodicity(
         many.p, many.v, many.lyapunov, many.stderr, scale=np.tile(half, len(begun)), speed=np.tile(speed, len(begun))

@@ -92,9 +92,7 @@ def _harmonic(system: System, drive: Harmonic, y0: Array, dy0: Array, plan: Plan
     return _in_radians(follow_exact(pieces, phase * one, p0, v0, plan.stops, plan), middle, half)
 
 
-def _along(
-    system: System, drive: AbstractExcitation, path: Course, period: Array, y0: Array, dy0: Array, plan: Plan
-) -> Followed:
+def _along(system: System, drive: AbstractExcitation, path: Course, period: Array, y0: Array, dy0: Array, plan: Plan) -> Followed:
     joint, middle, half = bare_joint(system)
     x0 = drive.at(jnp.asarray(begins(drive), dtype=float))
     one = jnp.ones(jnp.shape(y0))

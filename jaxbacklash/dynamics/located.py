@@ -84,9 +84,7 @@ def follow_located(
 
 
 @eqx.filter_jit
-def _follow(
-    system: System, own: Any, shared: Any, period: Array, y0: Array, dy0: Array, plan: Plan, panels: int
-) -> Followed:
+def _follow(system: System, own: Any, shared: Any, period: Array, y0: Array, dy0: Array, plan: Plan, panels: int) -> Followed:
     def one(system: System, own: Any, period: Array, y0: Array, dy0: Array) -> Followed:
         drive = eqx.combine(own, shared)
         state = system.rest(jnp.asarray(begins(drive), dtype=float), y0, dy0, drive.at(jnp.asarray(begins(drive), dtype=float)))

@@ -35,9 +35,7 @@ def compute_tile(wanted: Request, box: tuple[slice, ...]) -> tuple[dict[str, np.
     system, drive = wanted.family.build(given)
     one = np.ones(lanes)
     y0, dy0 = wanted.start[0] * one, wanted.start[1] * one
-    found, solver = follow(
-        system, drive, y0, dy0, wanted.plan, period=wanted.period, exact=wanted.exact, panels=wanted.panels
-    )
+    found, solver = follow(system, drive, y0, dy0, wanted.plan, period=wanted.period, exact=wanted.exact, panels=wanted.panels)
     half, speed = sizes(system)
     number = {
         "lyapunov": found.lyapunov, "lyapunov_stderr": found.stderr, "unresolved": found.unresolved, "poincare": found.p,

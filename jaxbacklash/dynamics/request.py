@@ -55,9 +55,7 @@ class Request:
 
     def tiles(self) -> list[tuple[slice, ...]]:
         """The map cut into boxes of the tile's shape, smaller at its far sides."""
-        cuts = [
-            [slice(i, min(i + step, size)) for i in range(0, size, step)] for size, step in zip(self.shape, self.tile)
-        ]
+        cuts = [[slice(i, min(i + step, size)) for i in range(0, size, step)] for size, step in zip(self.shape, self.tile)]
         return [tuple(box) for box in product(*cuts)]
 
     def fingerprint(self) -> str:

@@ -29,6 +29,4 @@ def summary(plan: Plan, period: Array, p: Array, v: Array, growth: Array, unreso
     error = batch_error(stops[from_here:], counted)
     last = jnp.stack([p[-1], v[-1]])
     bad = unresolved | ~jnp.isfinite(mean)
-    return Followed(
-        jnp.where(bad, jnp.nan, mean / period), error / period, p[-plan.samples :], v[-plan.samples :], bad, last
-    )
+    return Followed(jnp.where(bad, jnp.nan, mean / period), error / period, p[-plan.samples :], v[-plan.samples :], bad, last)

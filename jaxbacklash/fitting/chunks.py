@@ -73,9 +73,7 @@ def by_chunks(work: Callable[[Any, Any], Any], shared: Any, lead: Any, used: Arr
 
     everywhere, split = PartitionSpec(), PartitionSpec("cores")
     mesh = Mesh(np.asarray(sharing()), ("cores",))
-    spread = jax.shard_map(
-        on_core, mesh=mesh, in_specs=(everywhere, split, everywhere), out_specs=everywhere, check_vma=False
-    )
+    spread = jax.shard_map(on_core, mesh=mesh, in_specs=(everywhere, split, everywhere), out_specs=everywhere, check_vma=False)
     gathered = spread(arrays, dealt, used)
     # Tracing the call has told the shapes; asking for them beforehand would trace the work a second time.
     _, unravel = ravel_pytree(jax.tree.map(lambda s: jnp.zeros(s.shape, s.dtype), shapes))

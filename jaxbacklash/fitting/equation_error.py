@@ -172,8 +172,7 @@ class _WeakForm(Averaged):
         if self._speeds is None:
             t, window = self._record.t, span(self._record.dt)
             spline = [
-                fit_spline(t, v, t[0], window / choose_intervals(t, v, window)) if np.any(v) else None
-                for v in (self.y, self.x)
+                fit_spline(t, v, t[0], window / choose_intervals(t, v, window)) if np.any(v) else None for v in (self.y, self.x)
             ]
             dy, dx = (np.zeros_like(self.y) if f is None else f(t, 1) for f in spline)
             self._speeds = dy, dx

@@ -125,8 +125,9 @@ def judge(
     if contact_samples(system, records[0].dt) < SHORTEST and system.observed != "T" and "stiffness" not in reasons:
         least = reach_of_sampling(system, records[0].dt)
         of_what = unit_text("N m/rad", translational=translational, per_inertia=per_inertia)
-        reasons["stiffness"] = UNDETERMINED, (
-            f"contacts last less than {SHORTEST:g} samples: it is above {least:.3g} {of_what}, and the sampling shows no more"
+        reasons["stiffness"] = (
+            UNDETERMINED,
+            (f"contacts last less than {SHORTEST:g} samples: it is above {least:.3g} {of_what}, and the sampling shows no more"),
         )
     for name in free:
         spec, error = described[name], stderr[name]
@@ -143,9 +144,7 @@ def judge(
             verdict, why = UNDETERMINED, f"the record tells it only together with {partners[name]}: their errors are one"
         hidden = verdict != FOUND
         finite = np.isfinite(error) and not hidden
-        found[name] = Estimate(
-            name, None if hidden else value, error if finite else None, unit, verdict, why, spec.label or name
-        )
+        found[name] = Estimate(name, None if hidden else value, error if finite else None, unit, verdict, why, spec.label or name)
     return found
 
 

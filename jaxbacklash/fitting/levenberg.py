@@ -71,7 +71,5 @@ def _minimise(problem: Problem, start: Unknowns, how: Levenberg, max_steps: int)
 
     solver = BlockLevenbergMarquardt(rtol=how.rtol, atol=how.atol, damping=how.damping, limit=how.limit)
     rows: Any = residual_rows  # optimistix's types take rows or rows with something beside, not both
-    found: optx.Solution = optx.least_squares(
-        rows, solver, start, args=problem, has_aux=True, max_steps=max_steps, throw=False
-    )
+    found: optx.Solution = optx.least_squares(rows, solver, start, args=problem, has_aux=True, max_steps=max_steps, throw=False)
     return found.value, found.stats

@@ -137,9 +137,7 @@ def _from_starts(
     raise NoAnswer(NOWHERE)
 
 
-def _arrive(
-    problem: Problem, guess: Unknowns, starts: int, seed: int, progress: Callable[[str, float], None]
-) -> list[Minimum]:
+def _arrive(problem: Problem, guess: Unknowns, starts: int, seed: int, progress: Callable[[str, float], None]) -> list[Minimum]:
     """Where each start arrives, the best first."""
     rng = np.random.default_rng(seed)
     arrived = []
@@ -249,7 +247,5 @@ def inverse_information(schur: np.ndarray) -> np.ndarray:
     inverse[np.diag_indices_from(inverse)] = np.inf
     if np.any(alive):
         core = schur[np.ix_(alive, alive)] / np.outer(scale[alive], scale[alive])
-        inverse[np.ix_(alive, alive)] = np.linalg.pinv(core, rcond=1e-14, hermitian=True) / np.outer(
-            scale[alive], scale[alive]
-        )
+        inverse[np.ix_(alive, alive)] = np.linalg.pinv(core, rcond=1e-14, hermitian=True) / np.outer(scale[alive], scale[alive])
     return inverse

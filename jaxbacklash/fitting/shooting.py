@@ -254,9 +254,7 @@ def _meet(shared: tuple[Problem, Array], lead: tuple[Window, Shot]) -> Met:
     basis, lagged = input_tangents(problem, theta, own.local)
     motion_rows, end_rows = rows(w, rebuild_active(problem), theta, problem.active, shot.states, shot.u, shot.du, basis, lagged)
     tie_weight = tie_weights(problem, n)
-    weighted = jnp.concatenate(
-        [weighed(motion_rows, w.weight[:, None, :]), weighed(end_rows, tie_weight[:, None, :])], axis=2
-    )
+    weighted = jnp.concatenate([weighed(motion_rows, w.weight[:, None, :]), weighed(end_rows, tie_weight[:, None, :])], axis=2)
     gram = jnp.einsum("wir,wjr->wij", weighted, weighted)
     unseen = jnp.sum(weighted[:, :, -n:] ** 2, axis=2)  # what a tie adds is no sample, and would damp every step
     slope = jnp.einsum("wir,wr->wi", weighted, jnp.concatenate([shot.motion, shot.tie], axis=1))

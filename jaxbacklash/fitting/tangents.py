@@ -93,9 +93,7 @@ def panel_matrices(
     return jnp.stack([unlay(v) for v in found], axis=2)
 
 
-def output_matrices(
-    w: Windows, rebuild: Any, theta: Array, states: tuple[Array, ...], u: Array, du: Array
-) -> Array:
+def output_matrices(w: Windows, rebuild: Any, theta: Array, states: tuple[Array, ...], u: Array, du: Array) -> Array:
     """Derivatives of the measured channel at the samples, (n + 2 + q, W, M): by state, by u and du, by theta."""
     n, q = len(states), theta.shape[0]
     t = w.t0[:, None] + w.panel * w.every * jnp.arange(w.samples)
@@ -168,8 +166,6 @@ def rows(
     by_input = sum(shown[n + e].T[:, None] * basis[e, at][:, :, None] for e in range(2))
     by_theta = jnp.transpose(shown[n + 2 :], (2, 0, 1))
     if lagged is not None:
-        by_theta = by_theta + sum(
-            shown[n + e].T[:, None] * jnp.transpose(lagged[e][:, at], (1, 2, 0)) for e in range(2)
-        )
+        by_theta = by_theta + sum(shown[n + e].T[:, None] * jnp.transpose(lagged[e][:, at], (1, 2, 0)) for e in range(2))
     tangent = tangent + jnp.concatenate([jnp.zeros((w.samples, n, w.count)), by_input, by_theta], axis=1)
     return jnp.transpose(tangent, (2, 1, 0)), jnp.transpose(end, (2, 1, 0))

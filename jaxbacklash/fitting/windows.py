@@ -217,9 +217,7 @@ def _shown(length: int, intervals: int, needed: int) -> np.ndarray:
     return np.concatenate([_basis(length, 1, intervals, 1.0)[0, :-1], HELD / finest ** (DEGREE + 1) * corners])
 
 
-def _cut_one(
-    record: Record, length: int, every: int, intervals: int, needed: int, driver: str | None
-) -> dict[str, Any]:
+def _cut_one(record: Record, length: int, every: int, intervals: int, needed: int, driver: str | None) -> dict[str, Any]:
     dt, samples = record.dt, record.samples
     count = -(-samples // length)
     rows = count + 1

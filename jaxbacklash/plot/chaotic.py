@@ -183,6 +183,8 @@ def _walk(ax: Axes, found: ChaosReport) -> None:
     ax.set(xlabel="p [standard deviations]", ylabel="q [standard deviations]")
     ax.set_title(f"0-1 test: K = {found.walk.k:.2f}", loc="left")
     ax.set_aspect("equal", adjustable="datalim")
+
+
 @picture
 def driven_growth(found: ChaosReport, name: str = "z", unit: str = "", *, ax: Where = None) -> list[Axes]:
     """How a small difference grows under the measured drive, along the law of motion that the record shows.

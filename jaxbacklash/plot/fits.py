@@ -55,9 +55,7 @@ def beside(found: Fit | Comparison, number: int = 0) -> Beside:
     )
 
 
-def fit(
-    found: Fit | Comparison, *, record: int = 0, between: tuple[float, float] | None = None, ax: Where = None
-) -> Drawn:
+def fit(found: Fit | Comparison, *, record: int = 0, between: tuple[float, float] | None = None, ax: Where = None) -> Drawn:
     """The record with its model: all of it, and below the stretch that the model misses most and a typical one.
 
     Each window is predicted from its own start. On one axes the whole record is drawn, or the stretch that is asked for.

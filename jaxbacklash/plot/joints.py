@@ -179,9 +179,7 @@ def _reach(values: np.ndarray) -> tuple[float, float]:
     return float(low - margin), float(high + margin)
 
 
-def _density(
-    ax: Axes, across: np.ndarray, up: np.ndarray, widths: list[tuple[float, float]], colour: str, cells: int
-) -> None:
+def _density(ax: Axes, across: np.ndarray, up: np.ndarray, widths: list[tuple[float, float]], colour: str, cells: int) -> None:
     """Visits per cell of the straight lines between samples, as opacity on a logarithmic scale."""
     if across.size < 2:
         return

@@ -89,9 +89,7 @@ def exponents(
     )  # fmt: skip
 
 
-def bifurcation(
-    found: Any, *, degrees: bool = False, play: tuple[float, float] | None = None, ax: Where = None
-) -> Drawn:
+def bifurcation(found: Any, *, degrees: bool = False, play: tuple[float, float] | None = None, ax: Where = None) -> Drawn:
     """Where the motion is at whole periods of the drive, over one parameter: swept up, swept down, and from many starts.
 
     Parameters

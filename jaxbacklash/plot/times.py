@@ -107,9 +107,7 @@ def stretch_of_model(
 
 
 @picture
-def residual_in_time(
-    t: Any, residual_over_noise: Any, *, window_edges: Any, window_rms: Any, ax: Where = None
-) -> list[Axes]:
+def residual_in_time(t: Any, residual_over_noise: Any, *, window_edges: Any, window_rms: Any, ax: Where = None) -> list[Axes]:
     """What the model leaves, in units of the noise: every sample above, each window's root mean square below.
 
     Parameters
@@ -204,26 +202,20 @@ def _shade(ax: Axes, t: np.ndarray, edges: list[int]) -> None:
         ax.axvspan(t[start], t[min(end, t.size - 1)], color=ink(ax), alpha=0.06, lw=0)
 
 
-def _zoom(
-    ax: Axes, t: np.ndarray, measured: np.ndarray, model: np.ndarray, edges: list[int], noise: float | None
-) -> None:
+def _zoom(ax: Axes, t: np.ndarray, measured: np.ndarray, model: np.ndarray, edges: list[int], noise: float | None) -> None:
     _shade(ax, t, edges)
     many = t.size > 1500
     ax.plot(t, measured, "o", color=MEASURED, ms=2.6, mew=0, rasterized=many)
     for start, end in pairwise(edges):
         inside = slice(start, end)
         if noise:
-            ax.fill_between(
-                t[inside], model[inside] - 2 * noise, model[inside] + 2 * noise, color=MODEL, alpha=0.3, lw=0
-            )
+            ax.fill_between(t[inside], model[inside] - 2 * noise, model[inside] + 2 * noise, color=MODEL, alpha=0.3, lw=0)
         ax.plot(t[inside], model[inside], color=MODEL, lw=0.9)
     ax.set_xlim(t[0], t[-1])
     ax.margins(y=0.12)
 
 
-def _left_over(
-    ax: Axes, t: np.ndarray, difference: np.ndarray, edges: list[int], noise: float | None, unit: str
-) -> None:
+def _left_over(ax: Axes, t: np.ndarray, difference: np.ndarray, edges: list[int], noise: float | None, unit: str) -> None:
     _shade(ax, t, edges)
     if noise:
         ax.axhspan(-2, 2, color=GAP, alpha=0.25, lw=0)

@@ -22,9 +22,7 @@ LARGEST_SERIES = 1e60
 LARGEST = 1e12
 """No value in SI units is larger in size, and no motion or force smaller in range than its inverse: squares and fourth powers of
 them, which a fit needs, stay far within double precision."""
-WANTED_CHANNELS = (
-    "x with z or y (base motion), F with y or z (force), x with T (transmitted force), or z or y alone (free decay)"
-)
+WANTED_CHANNELS = "x with z or y (base motion), F with y or z (force), x with T (transmitted force), or z or y alone (free decay)"
 
 
 def wrong(place: str, found: str, wanted: str, remedy: str = "") -> BadInput:

@@ -75,9 +75,7 @@ def stated_units(picked: Picked, options: ReadOptions, where: str) -> tuple[dict
     return units, notes
 
 
-def in_si(
-    table: Table, picked: Picked, options: ReadOptions, where: str
-) -> tuple[dict[str, np.ndarray], list[str]]:
+def in_si(table: Table, picked: Picked, options: ReadOptions, where: str) -> tuple[dict[str, np.ndarray], list[str]]:
     """The channels but t in SI and radians, and sentences on how they were converted.
 
     Raises

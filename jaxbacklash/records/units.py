@@ -83,9 +83,7 @@ def known_unit(name: str, unit: str, option: str = "--unit") -> str:
     return known
 
 
-def factors(
-    units: Mapping[str, str], scales: Mapping[str, float], present: Iterable[str], where: str
-) -> dict[str, float]:
+def factors(units: Mapping[str, str], scales: Mapping[str, float], present: Iterable[str], where: str) -> dict[str, float]:
     """What to multiply each channel by to have it in SI and radians.
 
     Parameters

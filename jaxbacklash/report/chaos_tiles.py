@@ -18,9 +18,7 @@ def chaos_tiles(result: Mapping[str, Any]) -> list[dict[str, str]]:
         label = "exponent under this drive" if found.get("conditional_on_drive") else "largest Lyapunov exponent"
         tiles.append({"label": label, "value": _three(found["value"]), "unit": "1/s", "rest": rest})
     else:
-        tiles.append(
-            {"label": "largest Lyapunov exponent", "value": "none", "unit": "", "rest": str(found.get("why") or "")}
-        )
+        tiles.append({"label": "largest Lyapunov exponent", "value": "none", "unit": "", "rest": str(found.get("why") or "")})
     if is_number(found.get("per_period")):
         rest = f"a period is {short(found.get('drive_period_s'), 4)} s"
         tiles.append({"label": "per drive period", "value": short(found["per_period"]), "unit": "", "rest": rest})

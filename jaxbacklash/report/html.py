@@ -84,9 +84,7 @@ def write_report(
     try:
         write_whole(target, text)
     except OSError as error:
-        raise BadInput(
-            f"{target}: the report cannot be written ({error.strerror}), wanted a folder to write into"
-        ) from None
+        raise BadInput(f"{target}: the report cannot be written ({error.strerror}), wanted a folder to write into") from None
     return target
 
 

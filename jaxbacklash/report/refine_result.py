@@ -98,9 +98,7 @@ def other_methods(fit: Fit) -> dict[str, Any]:
     play, spring = isinstance(fit.system.contact, Contact), fit.system.contact is not None
     try:
         with np.errstate(all="ignore"):
-            start = estimate(
-                fit.records[0], inertia=inertia, play=play, spring=spring, effects=list(fit.system.effects.values())
-            )
+            start = estimate(fit.records[0], inertia=inertia, play=play, spring=spring, effects=list(fit.system.effects.values()))
     except (BadInput, NoAnswer, np.linalg.LinAlgError, ValueError) as error:
         return cross_check(fit) | {"equation_error": {"agrees": None, "why": f"the regression failed: {error}"}}
     return cross_check(fit, start)

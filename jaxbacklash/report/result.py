@@ -142,8 +142,7 @@ def as_json(
         result["noise_open"] = dict(fit.noise_open[0])
     if len(fit.records) > 1:
         result["records"] = [
-            about_record(r) | {"noise": finite(n)} | errors(s)
-            for r, n, s in zip(fit.records, fit.noise, fit.scores)
+            about_record(r) | {"noise": finite(n)} | errors(s) for r, n, s in zip(fit.records, fit.noise, fit.scores)
         ]
     return result
 

@@ -124,9 +124,7 @@ def carrier(t: np.ndarray, values: np.ndarray, *, cycles: float = 1.0) -> Carrie
 def _rising(t: np.ndarray, phase: np.ndarray, turns: float) -> np.ndarray:
     """The phase over a running mean of a few average cycles, made to rise."""
     length = int(np.clip(round(2.0 * t.size / turns), 3, max(3, t.size // 8)))
-    padded = np.concatenate(
-        [2 * phase[0] - phase[length:0:-1], phase, 2 * phase[-1] - phase[-2 : -length - 2 : -1]]
-    )
+    padded = np.concatenate([2 * phase[0] - phase[length:0:-1], phase, 2 * phase[-1] - phase[-2 : -length - 2 : -1]])
     return _monotone(uniform_filter1d(padded, length)[length : length + t.size])
 
 

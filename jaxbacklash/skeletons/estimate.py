@@ -219,9 +219,7 @@ def _impure(along: Fundamental, motion: _Motion, beside: Fundamental | None) -> 
 
 def _terms(along: Fundamental, motion: _Motion) -> Terms:
     torque = along.of(motion.torque) if np.any(motion.torque) else np.zeros(along.t.size, complex)
-    return Terms(
-        along, along.of(motion.z), along.of(motion.z, 1), along.of(motion.y, 2), torque, motion.t, motion.smooth
-    )
+    return Terms(along, along.of(motion.z), along.of(motion.z, 1), along.of(motion.y, 2), torque, motion.t, motion.smooth)
 
 
 def _with_allowance(found: Inversion, terms: Terms, motion: _Motion, keep: np.ndarray, inertia: float | None) -> Inversion:

@@ -33,9 +33,7 @@ def one_panel(system: Any, t: Any, state: Any, a: Any, b: Any, h: Any, located: 
     return (advance_smooth_in_turns if in_turns else advance_smooth)(system, t, state, drive_at, h)
 
 
-def run_panels(
-    system: Any, t: Any, state: Any, edges: Any, h: Any, every: int, located: bool
-) -> tuple[Any, Any]:
+def run_panels(system: Any, t: Any, state: Any, edges: Any, h: Any, every: int, located: bool) -> tuple[Any, Any]:
     """Scan over the panels of one run.
 
     Parameters

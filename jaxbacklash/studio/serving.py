@@ -19,7 +19,7 @@ from .figures import Gallery
 from .guard import ADDRESS, guarded, new_token
 from .session import Session
 
-MISSING = "the page needs Panel, which is not installed: pip install \"jaxbacklash[studio]\""
+MISSING = 'the page needs Panel, which is not installed: pip install "jaxbacklash[studio]"'
 
 
 class Server:

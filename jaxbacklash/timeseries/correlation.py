@@ -37,9 +37,7 @@ class Correlation:
     why: str
 
 
-def correlation(
-    series: np.ndarray, dimensions: range, delay: int, theiler: int, rng: np.random.Generator
-) -> Correlation:
+def correlation(series: np.ndarray, dimensions: range, delay: int, theiler: int, rng: np.random.Generator) -> Correlation:
     """Correlation sums in several embeddings and the dimension they agree on.
 
     Counts pairs through two trees, never all pairs one by one, and takes off those within the Theiler window (Theiler,
@@ -122,9 +120,7 @@ def _line(log_radii: np.ndarray, logs: np.ndarray, first: int, end: int) -> Regi
     return Region(int(first), int(end), float(slope), float(intercept))
 
 
-def _close_in_time(
-    points: np.ndarray, at: np.ndarray, to: np.ndarray, theiler: int, radii: np.ndarray
-) -> tuple[np.ndarray, int]:
+def _close_in_time(points: np.ndarray, at: np.ndarray, to: np.ndarray, theiler: int, radii: np.ndarray) -> tuple[np.ndarray, int]:
     """Pairs within the Theiler window: how many within each radius (R,), and how many in all."""
     histogram, total = np.zeros(radii.size + 1), 0
     is_target = np.zeros(len(points), dtype=bool)

@@ -56,7 +56,7 @@ class Driven:
 
     @property
     def word(self) -> str:
-        """"separate", "meet", "undecided", or "none" where there is no exponent."""
+        """ "separate", "meet", "undecided", or "none" where there is no exponent."""
         if self.value is None or self.interval is None:
             return "none"
         if abs(self.value) * self.samples > GROWS:

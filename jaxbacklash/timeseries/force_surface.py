@@ -200,9 +200,7 @@ class Law:
     def of(self, weights: np.ndarray) -> Surface:
         """The law that fits best."""
         theta = self._solve(weights) / self._scale
-        force, damping, inputs, rubbed = np.split(
-            theta, np.cumsum([self.edges.size, self.damping_edges.size, ORDERS])
-        )
+        force, damping, inputs, rubbed = np.split(theta, np.cumsum([self.edges.size, self.damping_edges.size, ORDERS]))
         friction = None if self.friction_edges is None else np.concatenate([[0.0], rubbed, [0.0]])
         return Surface(
             self.edges, force, self.damping_edges, damping, self.against, self.friction_edges, friction, inputs, self.error

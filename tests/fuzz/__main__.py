@@ -40,15 +40,21 @@ def main() -> None:
         table[f"{kind.door}: {kind.name}"]["failed" if verdict.failed else f"exit {run.code}"] += 1
         if verdict.failed:
             last = (run.err.strip().splitlines() or [""])[-1]
-            print(f"{index} {kind.door}: {kind.name}  exit {run.code}, {run.seconds:.1f} s\n    {shell(case.words)[:300]}",
-                flush=True)
+            print(
+                f"{index} {kind.door}: {kind.name}  exit {run.code}, {run.seconds:.1f} s\n    {shell(case.words)[:300]}",
+                flush=True,
+            )
             print("".join(f"    {complaint}\n" for complaint in verdict.complaints) + f"    stderr: {last[:300]}", flush=True)
     worker.close()
     for name in sorted(table):
         print(f"{name:60s} " + ", ".join(f"{what} {count}" for what, count in sorted(table[name].items())))
     print("seconds:", ", ".join(f"{door} {seconds:.0f}" for door, seconds in sorted(spent.items())))
-    print("failed:", sum(counts["failed"] for counts in table.values()), "of",
-        sum(sum(counts.values()) for counts in table.values()))
+    print(
+        "failed:",
+        sum(counts["failed"] for counts in table.values()),
+        "of",
+        sum(sum(counts.values()) for counts in table.values()),
+    )
 
 
 if __name__ == "__main__":

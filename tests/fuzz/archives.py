@@ -51,8 +51,10 @@ def numpy_archive(rng, folder: Path) -> Case:
         strange = columns["z"].astype(pick(rng, "datetime64[s]", "S5", "U5", "c16"))
         np.savez(path, **(columns | {"z": strange}))
     elif choice == 7:
-        np.savez(path, **(columns | {"z": pick(rng, columns["z"][:-1], columns["z"].reshape(7, 11, 13), np.float64(3.0),
-            columns["z"][:0])}))
+        np.savez(
+            path,
+            **(columns | {"z": pick(rng, columns["z"][:-1], columns["z"].reshape(7, 11, 13), np.float64(3.0), columns["z"][:0])}),
+        )
     else:
         np.savez_compressed(path, **{name: np.zeros(20_000_000) for name in columns})  # small on disk, large in memory
     return _case(rng, folder, "r.npz")
@@ -136,7 +138,8 @@ def a_file_under_another_suffix(rng, folder: Path) -> Case:
     np.savez(source, **good_columns())
     data = source.read_bytes()
     source.unlink()
-    name = "r" + pick(rng, ".csv", ".mat", ".json", ".xlsx", ".npy", ".txt", ".gz", ".h5", ".tdms", ".xyz", "", ".py", ".toml",
-        ".csv.gz")
+    name = "r" + pick(
+        rng, ".csv", ".mat", ".json", ".xlsx", ".npy", ".txt", ".gz", ".h5", ".tdms", ".xyz", "", ".py", ".toml", ".csv.gz"
+    )
     (folder / name).write_bytes(data)
     return _case(rng, folder, name, accepts=True)

@@ -63,8 +63,9 @@ def a_file_that_is_no_model(rng, folder: Path) -> Case:
         MODEL.replace("backlash = 0.0186", "backlash = 100.0"),
         MODEL.replace("\n", "\r"), "\ufeff" + MODEL, MODEL + "\0",
     )  # fmt: skip
-    (folder / "m.toml").write_bytes(pick(rng, text.encode(), text.encode(), text.encode(), rng.bytes(300),
-    MODEL.encode("utf-16")))
+    (folder / "m.toml").write_bytes(
+        pick(rng, text.encode(), text.encode(), text.encode(), rng.bytes(300), MODEL.encode("utf-16"))
+    )
     return Case(_command(rng))
 
 

@@ -94,8 +94,19 @@ def where_to_write(rng, folder: Path) -> Case:
     words = command(name, folder)
     (folder / "kept").mkdir()
     (folder / "kept" / "mine.txt").write_text("mine\n")
-    target = pick(rng, "r.csv", "m.toml", "r.csv/o", "/proc/o", "/dev/null", "", "a" * 300, "/dev/null/x", "\u00e9/\u00fc",
-        "o" + "/o" * 1000)
+    target = pick(
+        rng,
+        "r.csv",
+        "m.toml",
+        "r.csv/o",
+        "/proc/o",
+        "/dev/null",
+        "",
+        "a" * 300,
+        "/dev/null/x",
+        "\u00e9/\u00fc",
+        "o" + "/o" * 1000,
+    )
     if name == "simulate":
         words = ["simulate", "m.toml", "--duration", "2"]
         target = pick(rng, target, "r.csv/s.csv", "kept", "kept/mine.txt", "s.xyz", "s", "/proc/s.csv", "kept/s.npz", "no/s.mat")
@@ -125,16 +136,31 @@ def excitations(rng, folder: Path) -> Case:
 @kind("options", 4)
 def maps(rng, folder: Path) -> Case:
     words = ["map", "--inverse-alpha", "1:5:6", "--zeta", "0.01:0.03:3", "--periods", "40", "--skip", "10", "--out", "m.nc"]
-    flag = str(pick(rng, "--inverse-alpha", "--zeta", "--omega", "--periods", "--skip", "--samples", "--start", "--case",
-        "--out"))
+    flag = str(
+        pick(rng, "--inverse-alpha", "--zeta", "--omega", "--periods", "--skip", "--samples", "--start", "--case", "--out")
+    )
     values = {
         "--periods": ("0", "-1", "5", "100000000", "1e3", "9" * 30), "--skip": ("-1", "40", "41", "9" * 30), "--case": ("0", "3",
         "x"),
         "--samples": ("0", "-5", "31", "100000000000"), "--start": ("1", "nan,0", "1e300,0", "a,b", "1,2,3", ""),
         "--out": ("m.csv", ".", "/proc/m.nc", "a/b/m.nc", "a" * 300 + ".nc", "r.csv"),
     }  # fmt: skip
-    ranges = ("1:5", "5:1:3", "1:5:0", "1:5:-3", "0:5:4", "1:5:99999999999999999999", "nan:5:4", "1:inf:4", "1:1e300:3", "", "a",
-        "1:5:4:3", "1:5:3000", "1e-300:2:3")
+    ranges = (
+        "1:5",
+        "5:1:3",
+        "1:5:0",
+        "1:5:-3",
+        "0:5:4",
+        "1:5:99999999999999999999",
+        "nan:5:4",
+        "1:inf:4",
+        "1:1e300:3",
+        "",
+        "a",
+        "1:5:4:3",
+        "1:5:3000",
+        "1e-300:2:3",
+    )
     value = str(pick(rng, *values.get(flag, ranges)))
     if flag in words and flag != "--out":
         at = words.index(flag)
@@ -164,4 +190,3 @@ def channels_of_chaos(rng, folder: Path) -> Case:
             ["--channel", "z "],
     )  # fmt: skip
     return Case([*words, *extra, *pick(rng, [], ["--out", "o"])])
-

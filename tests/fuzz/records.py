@@ -39,8 +39,9 @@ def cells_that_are_no_numbers(rng, folder: Path) -> Case:
     for _ in range(int(rng.integers(1, 5))):
         at = int(rng.integers(1, len(lines)))
         cells = lines[at].split(",")
-        cells[int(rng.integers(3))] = pick(rng, "inf", "-Infinity", "1e999", "0x1f", "1_000", "abc", "--", "=A1+B1", "1;2",
-            "\u0661\u0662", "1+2j", "true")
+        cells[int(rng.integers(3))] = pick(
+            rng, "inf", "-Infinity", "1e999", "0x1f", "1_000", "abc", "--", "=A1+B1", "1;2", "\u0661\u0662", "1+2j", "true"
+        )
         lines[at] = ",".join(cells)
     return _case(rng, folder, "\n".join(lines), accepts=False)
 
@@ -49,8 +50,14 @@ def cells_that_are_no_numbers(rng, folder: Path) -> Case:
 def lines_cut_or_joined(rng, folder: Path) -> Case:
     lines = csv_text(good_columns()).splitlines()
     at = int(rng.integers(1, len(lines) - 1))
-    lines[at] = pick(rng, lines[at][: len(lines[at]) // 2].rstrip(","), lines[at] + "," + lines[at + 1], lines[at] * 1000,
-        "x" * 200000, ",,,,,")
+    lines[at] = pick(
+        rng,
+        lines[at][: len(lines[at]) // 2].rstrip(","),
+        lines[at] + "," + lines[at + 1],
+        lines[at] * 1000,
+        "x" * 200000,
+        ",,,,,",
+    )
     return _case(rng, folder, "\n".join(lines))
 
 
@@ -89,8 +96,22 @@ def times_that_are_none(rng, folder: Path) -> Case:
 @kind("records", 2)
 def channels_misnamed(rng, folder: Path) -> Case:
     old, new = good_columns(), {}
-    names = pick(rng, "t,base,z", "t,z,base", "x,t,z", "t,F,y", "t,x,T", "time,a,b", "t,T,z", "t,y,x", "t,x,x", ",,", "t,F,z",
-        "T,X,Z", "t,x,z,y,F,T")
+    names = pick(
+        rng,
+        "t,base,z",
+        "t,z,base",
+        "x,t,z",
+        "t,F,y",
+        "t,x,T",
+        "time,a,b",
+        "t,T,z",
+        "t,y,x",
+        "t,x,x",
+        ",,",
+        "t,F,z",
+        "T,X,Z",
+        "t,x,z,y,F,T",
+    )
     for name, values in zip(names.split(","), [*old.values(), *[old["x"]] * 3], strict=False):
         new[name if name not in new else f"{name} "] = values
     return _case(rng, folder, csv_text(new))
@@ -107,8 +128,9 @@ def channels_that_tell_nothing(rng, folder: Path) -> Case:
     columns = dict(good_columns())
     noise = 1e-5 * rng.standard_normal(1001)
     name = str(pick(rng, "x", "z"))
-    columns[name] = pick(rng, 0.0 * noise, noise, 0.3 + 0.0 * noise, columns["t"], np.sign(noise), np.arange(1001) % 2.0,
-        1e-9 * noise)
+    columns[name] = pick(
+        rng, 0.0 * noise, noise, 0.3 + 0.0 * noise, columns["t"], np.sign(noise), np.arange(1001) % 2.0, 1e-9 * noise
+    )
     return _case(rng, folder, csv_text(columns))
 
 

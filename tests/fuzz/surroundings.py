@@ -66,8 +66,13 @@ def a_cache_that_is_none(rng, folder: Path) -> Case:
 def limits_and_streams(rng, folder: Path) -> Case:
     good_record(folder)
     good_model(folder)
-    words = pick(rng, ["fit", "r.csv", *FIT, "--out", "o"], ["fit", "r.csv", *FIT, "--json"], ["look", "r.csv"], ["simulate",
-        "m.toml", "--out", "s.csv", "--duration", "3"])
+    words = pick(
+        rng,
+        ["fit", "r.csv", *FIT, "--out", "o"],
+        ["fit", "r.csv", *FIT, "--json"],
+        ["look", "r.csv"],
+        ["simulate", "m.toml", "--out", "s.csv", "--duration", "3"],
+    )
     choice = int(rng.integers(8))
     case = Case(words, alone=True)
     if choice == 0:

@@ -95,9 +95,7 @@ def widest_spacing(x: Callable, end: float, within: float, spacings: tuple[float
     return next((s for s in spacings if _Space(end, s, x).misfit < within), spacings[-1])
 
 
-def force_bound(
-    rig: Rig, t, y, v, force: Callable, *, sigma_y: float, spacing: float = 5e-3, inertia: bool = False
-) -> Bound:
+def force_bound(rig: Rig, t, y, v, force: Callable, *, sigma_y: float, spacing: float = 5e-3, inertia: bool = False) -> Bound:
     """The bound on (b, k, c), or (J, b, k, c) if `inertia` is unknown too, from a record driven by force(t) [N m].
 
     Args: t, y, v as above; sigma_y [rad]; spacing: between the knots of the spline that stands for the force [s].

@@ -52,9 +52,7 @@ def _period(cell, state, side, begin, length, rtol, atol):
                 q[1], force + push - damping * q[1] - stiffness * q[0], q[3], -damping * q[3] - stiffness * q[2],
             ]  # fmt: skip
 
-        done = solve_ivp(
-            rates, (t, end), state, method="DOP853", rtol=rtol, atol=atol, events=_edges(side), max_step=1.0
-        )
+        done = solve_ivp(rates, (t, end), state, method="DOP853", rtol=rtol, atol=atol, events=_edges(side), max_step=1.0)
         t, state = done.t[-1], done.y[:, -1].copy()
         if done.status == 1:
             new = 0 if side else (1 if state[0] > 0.0 else -1)

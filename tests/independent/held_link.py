@@ -65,9 +65,7 @@ class HeldLink:
             low, high = (low, middle) if abs(pull(t + middle)) > self.friction else (middle, high)
         return t + high, int(copysign(1, pull(t + high)))
 
-    def _slide(
-        self, t: float, y: float, v: float, way: int, h: float, x: Motion, dx: Motion
-    ) -> tuple[float, float, float, int]:
+    def _slide(self, t: float, y: float, v: float, way: int, h: float, x: Motion, dx: Motion) -> tuple[float, float, float, int]:
         def rate(at: float, y: float, v: float) -> tuple[float, float]:
             return v, (-self.force(y - x(at), v - dx(at)) - self.friction * way) / self.inertia
 

@@ -235,5 +235,3 @@ def coarse_stamps_at_800(draft: Draft, rng) -> None:
         draft.expect(SAID, r"800|uneven|stamp|rate|clock|time")
     else:
         draft.expect(REFUSED, r"row|uneven|stamp", r"--resample|--rate 800")
-
-

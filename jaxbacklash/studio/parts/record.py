@@ -27,9 +27,7 @@ class RecordPart(Part):
         self.again: Any = button("Look for files again", self._list, variant="outlined")
         self.file.param.watch(self._open, "value")
         self.held.param.watch(self._open_held, "value")
-        self.columns: Any = {
-            name: select(f"{name}: {WORDS[name]}", {NO_COLUMN: ""}, width=260) for name in CHANNELS
-        }
+        self.columns: Any = {name: select(f"{name}: {WORDS[name]}", {NO_COLUMN: ""}, width=260) for name in CHANNELS}
         self.units: Any = {
             name: select(f"unit of {name}", {AS_STATED: "", **{unit: unit for unit in units_of(name)}}, width=150)
             for name in CHANNELS

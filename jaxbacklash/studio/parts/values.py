@@ -57,7 +57,12 @@ class ValuesPart(Part):
         self.sliders = {}
         for one in ranges(model):
             slider: Any = pmui.FloatSlider(
-                label=f"{one.name} [{one.unit}]", start=one.low, end=one.high, step=one.step, value=one.value, format="0.[00000]",
+                label=f"{one.name} [{one.unit}]",
+                start=one.low,
+                end=one.high,
+                step=one.step,
+                value=one.value,
+                format="0.[00000]",
                 width=280,
             )
             slider.param.watch(lambda _: self._ask(), "value")
