@@ -28,11 +28,11 @@ from jaxbacklash.criticism.model_fitter import ModelFitter
 from jaxbacklash.criticism.refine import refine
 from jaxbacklash.criticism.refinement import Refinement
 from jaxbacklash.fitting.setup import base_system
-from jaxbacklash.fitting.windows import observed_noise
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import specs, with_values
 from jaxbacklash.program import start
 from jaxbacklash.records import Record
+from jaxbacklash.shooting.windows import observed_noise
 from tests.independent.generator import make_effects, make_excitation, make_rig, measure, simulate_truth
 from tests.independent.rigs import OUTSIDE_CATALOGUE, Rig
 

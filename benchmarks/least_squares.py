@@ -3,8 +3,8 @@
     python -m benchmarks.least_squares [--tiny]
 
 The record is a multisine at 500 Hz with noise of 3e-5 rad on x and on z. The residual is that of multiple shooting
-(`jaxbacklash.fitting.shooting.residual_rows`), first with windows that are free, from a stiffness 80 % and a play 50 % too large
-and half the damping, then tied into one trajectory, from where the free ones ended. Every solver is called by
+(`jaxbacklash.shooting.multiple_shooting.residual_rows`), first with windows that are free, from a stiffness 80 % and a play
+50 % too large and half the damping, then tied into one trajectory, from where the free ones ended. Every solver is called by
 `optimistix.least_squares`. Seconds are of the processor, so that what else the machine does counts for little; compiling
 includes tracing.
 """
@@ -24,11 +24,11 @@ import optimistix as optx
 
 import jaxbacklash as jb
 from benchmarks.fit_speed import NAMES, RIG, make_record, wild_start
-from jaxbacklash.fitting.block_levenberg import BlockLevenbergMarquardt
 from jaxbacklash.fitting.fit import prepare
-from jaxbacklash.fitting.problem import Problem, Unknowns
 from jaxbacklash.fitting.setup import first_guess, make_problem
-from jaxbacklash.fitting.shooting import per_window, residual_rows
+from jaxbacklash.shooting.block_levenberg import BlockLevenbergMarquardt
+from jaxbacklash.shooting.multiple_shooting import per_window, residual_rows
+from jaxbacklash.shooting.problem import Problem, Unknowns
 
 MOST = 100
 """Steps at most."""

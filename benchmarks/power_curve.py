@@ -48,8 +48,8 @@ def trial(
     from jaxbacklash.criticism.model_fitter import ModelFitter
     from jaxbacklash.criticism.refine import refine
     from jaxbacklash.criticism.screening import screen
-    from jaxbacklash.fitting.lengths import SCORE_WINDOW
     from jaxbacklash.fitting.setup import base_system
+    from jaxbacklash.shooting.lengths import SCORE_WINDOW
 
     sign = -1.0 if name is not None and not one_sided(name) and of.seed % 2 else 1.0
     strength = 0.0 if name is None else sign * multiple * errors[name]

@@ -3,9 +3,10 @@
 import numpy as np
 
 import jaxbacklash as jb
-from jaxbacklash.criticism import Dependence, Findings, Latent, Ranked, Ranking, Refinement, Stage, Surface
+from jaxbacklash.criticism import Ranked, Ranking, Refinement, Stage
 from jaxbacklash.criticism.verdict import Verdict
 from jaxbacklash.fitting import Comparison, Estimate, Fit, Score
+from jaxbacklash.residuals import Dependence, Findings, Latent, Surface
 
 INERTIA, PLAY, STIFFNESS, DAMPING = 3.16, 0.026, 12000.0, 20.0
 NOISE, RATE, WINDOW = 3e-5, 250.0, 0.2
@@ -136,7 +137,7 @@ def dependence(coordinate, label, names=(), strength=0.8, p=1e-9):
 
 def findings():
     """What `where_it_fails` tells of the made-up fit."""
-    from jaxbacklash.criticism.failures import PLACES
+    from jaxbacklash.residuals.failures import PLACES
 
     seen = latent()
     asked = (

@@ -6,12 +6,12 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from jaxbacklash.fitting import active_laws as module
-from jaxbacklash.fitting.active_laws import ActiveLaws, active_laws, exerting, rebuild_active
 from jaxbacklash.fitting.setup import first_guess
-from jaxbacklash.fitting.shooting import linearise, shoot
 from jaxbacklash.mechanics import Drive
 from jaxbacklash.parameters import specs
+from jaxbacklash.shooting import active_laws as module
+from jaxbacklash.shooting.active_laws import ActiveLaws, active_laws, exerting, rebuild_active
+from jaxbacklash.shooting.multiple_shooting import linearise, shoot
 
 from .hidden import fitter, hidden
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import optimize
 
-from jaxbacklash.fitting.block_tridiagonal import (
+from jaxbacklash.shooting.block_tridiagonal import (
     bordered,
     eliminate,
     factorise,
@@ -14,8 +14,8 @@ from jaxbacklash.fitting.block_tridiagonal import (
     solve_lower,
     solve_upper,
 )
-from jaxbacklash.fitting.damped_step import solve
-from jaxbacklash.fitting.shooting import Blocks
+from jaxbacklash.shooting.damped_step import solve
+from jaxbacklash.shooting.multiple_shooting import Blocks
 
 
 def system(rng, windows=5, size=3, q=2):

@@ -7,9 +7,9 @@ from scipy.linalg import expm
 
 import jaxbacklash as jb
 from jaxbacklash.fitting.continuation import TIGHTEST, continued, log_evidence
-from jaxbacklash.fitting.levenberg import Levenberg, minimise
 from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
-from jaxbacklash.fitting.windows import cut
+from jaxbacklash.shooting.levenberg import Levenberg, minimise
+from jaxbacklash.shooting.windows import cut
 
 SIGMA, DT, WINDOW = 1e-4, 0.004, 0.048
 OMEGA, ZETA = 25.0, 0.02

@@ -8,8 +8,8 @@ import pytest
 import jaxbacklash as jb
 from jaxbacklash.effects import CoulombGround, Preload
 from jaxbacklash.excitation import Multisine
-from jaxbacklash.fitting.levenberg import _minimise
 from jaxbacklash.models import linear_oscillator
+from jaxbacklash.shooting.levenberg import _minimise
 from jaxbacklash.simulation import as_record
 
 TRUTH = {"backlash": 0.02618, "stiffness": 13000.0, "damping": 12.0}

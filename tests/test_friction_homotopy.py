@@ -8,10 +8,10 @@ import numpy as np
 from jaxbacklash.fitting.fit import prepare
 from jaxbacklash.fitting.friction_homotopy import with_friction_widths
 from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
-from jaxbacklash.fitting.shooting import predictions
-from jaxbacklash.fitting.windows import Windows
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import values
+from jaxbacklash.shooting.multiple_shooting import predictions
+from jaxbacklash.shooting.windows import Windows
 
 from .hidden import hidden
 

@@ -7,12 +7,12 @@ import pytest
 
 from jaxbacklash import base_motion_joint, catalogue, simulate
 from jaxbacklash.excitation import Multisine
-from jaxbacklash.fitting.problem import Unknowns
 from jaxbacklash.fitting.setup import first_guess, make_problem
-from jaxbacklash.fitting.shooting import linearise, predictions, residuals, shoot
-from jaxbacklash.fitting.windows import cut
 from jaxbacklash.mechanics import Drive
 from jaxbacklash.parameters import ravel, specs, unravel
+from jaxbacklash.shooting.multiple_shooting import linearise, predictions, residuals, shoot
+from jaxbacklash.shooting.problem import Unknowns
+from jaxbacklash.shooting.windows import cut
 from jaxbacklash.simulation import as_record
 
 from .laws import LAWS

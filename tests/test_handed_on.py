@@ -8,12 +8,12 @@ import pytest
 import jaxbacklash as jb
 from jaxbacklash.fitting import handed_on as module
 from jaxbacklash.fitting.handed_on import handed_on, stuck_windows
-from jaxbacklash.fitting.levenberg import Levenberg, Minimum
-from jaxbacklash.fitting.problem import Unknowns
-from jaxbacklash.fitting.shooting import Prediction
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import values as values_of
 from jaxbacklash.sensors import SensorOffset
+from jaxbacklash.shooting.levenberg import Levenberg, Minimum
+from jaxbacklash.shooting.multiple_shooting import Prediction
+from jaxbacklash.shooting.problem import Unknowns
 
 from .hidden import fitter
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import jaxbacklash as jb
-from jaxbacklash.criticism import missing_torque_of, smoother
-from jaxbacklash.criticism.tables import smoothness
 from jaxbacklash.effects.learned import basis, hats
+from jaxbacklash.residuals import missing_torque_of, smoother
+from jaxbacklash.residuals.tables import smoothness
 
 from .hidden import RATE, hidden, missing_from
 

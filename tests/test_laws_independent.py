@@ -15,14 +15,14 @@ from jaxbacklash import simulate
 from jaxbacklash.effects import CoulombGround, CoulombJoint, FlexibleLink
 from jaxbacklash.excitation import Harmonic
 from jaxbacklash.fitting.fit import prepare
-from jaxbacklash.fitting.problem import Unknowns
 from jaxbacklash.fitting.setup import make_problem
-from jaxbacklash.fitting.shooting import predictions
-from jaxbacklash.fitting.windows import cut
 from jaxbacklash.mechanics import Drive
 from jaxbacklash.models import base_motion_joint, free_axis, linear_oscillator
 from jaxbacklash.parameters import ravel, specs, unravel, values, with_values
 from jaxbacklash.records import Record
+from jaxbacklash.shooting.multiple_shooting import predictions
+from jaxbacklash.shooting.problem import Unknowns
+from jaxbacklash.shooting.windows import cut
 from jaxbacklash.solvers import run_panels
 from tests.independent import kernel
 from tests.independent.generator import _COLUMNS, _GRID, _pieces, make_excitation, pack, simulate_truth

@@ -5,13 +5,13 @@ import jax
 import numpy as np
 import pytest
 
-from jaxbacklash.fitting.block_levenberg import BlockLevenbergMarquardt
-from jaxbacklash.fitting.levenberg import Levenberg, minimise
-from jaxbacklash.fitting.problem import Unknowns
 from jaxbacklash.fitting.search import TIES, tie_windows
 from jaxbacklash.fitting.setup import first_guess, make_problem
-from jaxbacklash.fitting.shooting import linearise, residual_rows, residuals, shoot
 from jaxbacklash.parameters import values, with_values
+from jaxbacklash.shooting.block_levenberg import BlockLevenbergMarquardt
+from jaxbacklash.shooting.levenberg import Levenberg, minimise
+from jaxbacklash.shooting.multiple_shooting import linearise, residual_rows, residuals, shoot
+from jaxbacklash.shooting.problem import Unknowns
 
 from .hidden import fitter, hidden
 

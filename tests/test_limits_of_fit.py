@@ -14,9 +14,9 @@ from jaxbacklash.fitting.estimates import judge
 from jaxbacklash.fitting.fit import prepare
 from jaxbacklash.fitting.handed_on import led_in
 from jaxbacklash.fitting.hard import reach_of_sampling
-from jaxbacklash.fitting.levenberg import Levenberg, minimise
 from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
 from jaxbacklash.fitting.size import MOST_SAMPLES, check_size, needed_rate
+from jaxbacklash.shooting.levenberg import Levenberg, minimise
 from jaxbacklash.system import System
 from tests.independent.free_play import decay
 

@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 from scipy.signal import lsim
 
 import jaxbacklash as jb
-from jaxbacklash.fitting.lengths import score_window, shooting_window
+from jaxbacklash.shooting.lengths import score_window, shooting_window
 from jaxbacklash.signals import choose_intervals, estimate_noise, fit_spline, rounding_noise, span
 from tests.independent.free_play import decay
 

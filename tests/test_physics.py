@@ -9,11 +9,11 @@ import jaxbacklash as jb
 from jaxbacklash.effects import Contact, Damper, Preload, corner
 from jaxbacklash.excitation import Chirp, Harmonic, Panelled, Sampled, SteppedSine
 from jaxbacklash.fitting.setup import first_guess, make_problem
-from jaxbacklash.fitting.shooting import predictions
-from jaxbacklash.fitting.windows import cut
 from jaxbacklash.mechanics import Drive
 from jaxbacklash.models import Dimensionless, free_axis, linear_oscillator
 from jaxbacklash.parameters import with_values
+from jaxbacklash.shooting.multiple_shooting import predictions
+from jaxbacklash.shooting.windows import cut
 from jaxbacklash.simulation import as_record, measured_base
 from jaxbacklash.solvers.panels import advance_smooth
 from tests.independent import events, motions

@@ -8,12 +8,12 @@ import pytest
 
 from jaxbacklash.effects import BoucWen, Dahl, FlexibleLink, Lugre
 from jaxbacklash.fitting.fit import prepare
-from jaxbacklash.fitting.levenberg import Levenberg, minimise
 from jaxbacklash.fitting.search import freedom
 from jaxbacklash.fitting.setup import first_guess, make_problem
-from jaxbacklash.fitting.shooting import KEPT, _first_remembered, tie_weights
 from jaxbacklash.mechanics import canonical_name
 from jaxbacklash.parameters import values
+from jaxbacklash.shooting.levenberg import Levenberg, minimise
+from jaxbacklash.shooting.multiple_shooting import KEPT, _first_remembered, tie_weights
 from tests.hidden import fitter, hidden, noisier
 
 

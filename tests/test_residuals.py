@@ -10,8 +10,8 @@ from scipy import stats
 import jaxbacklash as jb
 from jaxbacklash.commands import diagnose as command
 from jaxbacklash.commands.reading import Reading
-from jaxbacklash.criticism.failures import depends, ranks_of
 from jaxbacklash.model_file import load_model
+from jaxbacklash.residuals.failures import depends, ranks_of
 
 from .hidden import hidden
 

@@ -8,9 +8,9 @@ from scipy.signal import lsim
 
 import jaxbacklash as jb
 from jaxbacklash.excitation import Sampled
-from jaxbacklash.fitting.levenberg import Levenberg, minimise
 from jaxbacklash.model_file import input_between
 from jaxbacklash.records.force import way
+from jaxbacklash.shooting.levenberg import Levenberg, minimise
 from tests.in_process import call
 
 RATE, FINE, NOISE = 400.0, 32, 2e-6  # Hz, points a sample, m

@@ -7,11 +7,11 @@ from jaxbacklash.effects import Dahl
 from jaxbacklash.fitting.compare import compare
 from jaxbacklash.fitting.handed_on import follows
 from jaxbacklash.fitting.led_on import led_on
-from jaxbacklash.fitting.levenberg import Levenberg, minimise
-from jaxbacklash.fitting.problem import Unknowns
 from jaxbacklash.fitting.score import score
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.parameters import with_values
+from jaxbacklash.shooting.levenberg import Levenberg, minimise
+from jaxbacklash.shooting.problem import Unknowns
 from tests.hidden import fitter, hidden, noisier
 
 

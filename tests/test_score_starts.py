@@ -7,10 +7,10 @@ import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.fitting.fit import prepare
-from jaxbacklash.fitting.problem import Unknowns
 from jaxbacklash.fitting.score import score
 from jaxbacklash.fitting.setup import base_system, first_guess, free_names, make_problem
 from jaxbacklash.parameters import with_values
+from jaxbacklash.shooting.problem import Unknowns
 from tests.hidden import hidden
 
 module = importlib.import_module("jaxbacklash.fitting.score")

@@ -11,12 +11,12 @@ import jaxbacklash as jb
 from jaxbacklash.criticism.refinement import Refinement
 from jaxbacklash.criticism.steps import Stage
 from jaxbacklash.criticism.verdict import Verdict
-from jaxbacklash.criticism.words import headline
 from jaxbacklash.fitting.compare import Comparison
 from jaxbacklash.fitting.score import Score, error_in_words, nrmse, percent
 from jaxbacklash.model_file import dump_model
 from jaxbacklash.report.result import as_json, comparison_json
 from jaxbacklash.report.summary import summarise
+from jaxbacklash.residuals.words import headline
 
 from .report_samples import result
 from .test_cli import call as call  # the fixture that runs the command line

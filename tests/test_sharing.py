@@ -23,7 +23,7 @@ import jax.numpy as jnp
 import numpy as np
 
 import jaxbacklash
-from jaxbacklash.fitting.chunks import CHUNK, by_chunks
+from jaxbacklash.shooting.chunks import CHUNK, by_chunks
 
 jaxbacklash.start(cache=False, devices=2)
 dealt = jax.jit(lambda shared, lead: by_chunks(lambda s, a: jnp.sin(a @ s) @ s.T, shared, lead, len(lead)))

@@ -7,11 +7,11 @@ import jaxbacklash as jb
 from jaxbacklash.excitation import Multisine
 from jaxbacklash.fitting import search as module
 from jaxbacklash.fitting.fit import prepare
-from jaxbacklash.fitting.levenberg import Minimum
 from jaxbacklash.fitting.search import freedom, search, tie_windows
 from jaxbacklash.fitting.setup import first_guess, make_problem
 from jaxbacklash.fitting.stretch import STRETCH, stretch
 from jaxbacklash.parameters import values
+from jaxbacklash.shooting.levenberg import Minimum
 from jaxbacklash.simulation import as_record
 
 NAMES = ("backlash", "stiffness", "damping")

@@ -8,9 +8,9 @@ import jaxbacklash as jb
 from jaxbacklash.criticism.model_builder import ModelBuilder
 from jaxbacklash.effects import Contact, Damper
 from jaxbacklash.fitting.setup import base_system, first_guess, make_problem, read_through
-from jaxbacklash.fitting.shooting import linearise, predictions, shoot, weighed
 from jaxbacklash.mechanics import AbstractEffect, catalogue
 from jaxbacklash.parameters import Scalar, param
+from jaxbacklash.shooting.multiple_shooting import linearise, predictions, shoot, weighed
 from jaxbacklash.system import System
 
 PLAY, STIFFNESS, DAMPING, INERTIA = 0.02, 4e3, 2.0, 1.0

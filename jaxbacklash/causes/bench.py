@@ -14,14 +14,14 @@ import equinox as eqx
 import numpy as np
 
 from ..errors import BadInput, NoAnswer
-from ..fitting.levenberg import Levenberg, Minimum, minimise
-from ..fitting.problem import Problem, Unknowns
 from ..fitting.result import Fit
 from ..fitting.score import Score, score
 from ..fitting.search import freedom, search
-from ..fitting.windows import Layout, Windows, cut
 from ..parameters import values, with_values
 from ..records import Record
+from ..shooting.levenberg import Levenberg, Minimum, minimise
+from ..shooting.problem import Problem, Unknowns
+from ..shooting.windows import Layout, Windows, cut
 from ..system import System
 from .kinds import Corrected, Kind
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from .. import __version__
 from ..causes import Cause, find_causes
-from ..criticism import Findings, Ranking, rank_effects, where_it_fails
+from ..criticism import Ranking, rank_effects
 from ..criticism.ranking import table
 from ..errors import BadInput
 from ..fitting import Fit
@@ -21,6 +21,7 @@ from ..model_file import dump_model
 from ..records.force import between
 from ..report.refine_result import candidates_json
 from ..report.result import as_json as result_of
+from ..residuals import Findings, where_it_fails
 from .common import check_window, json_text, model_of_file, names, out_folder, progress, write_text
 from .reading import Reading
 

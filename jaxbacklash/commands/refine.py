@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import __version__
-from ..criticism import Findings, Refinement, Surface, where_it_fails
+from ..criticism import Refinement
 from ..criticism import refine as refine_record
 from ..criticism.causes_first import causes_first, told
 from ..criticism.ranking import plain
@@ -19,6 +19,7 @@ from ..errors import NoAnswer
 from ..model_file import dump_model
 from ..records.force import between
 from ..report.refine_result import other_methods, refinement_json
+from ..residuals import Findings, Surface, where_it_fails
 from ..system import System
 from .common import check_window, json_text, model_of_file, out_folder, progress, write_text
 from .heldout import check_heldout

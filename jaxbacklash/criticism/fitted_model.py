@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..fitting.continuation import Continued, Stop, evidence_at
-from ..fitting.problem import Unknowns
 from ..parameters import values, with_values
+from ..shooting.problem import Unknowns
 from ..system import System
 
 

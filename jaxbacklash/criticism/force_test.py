@@ -11,8 +11,8 @@ import equinox as eqx
 import numpy as np
 
 from ..fitting.continuation import SHARP, tied
-from ..fitting.problem import Unknowns
 from ..mechanics import AbstractEffect
+from ..shooting.problem import Unknowns
 from .along_motion import motion, own_torques
 from .fitted_model import FittedModel
 from .model_fitter import ModelFitter

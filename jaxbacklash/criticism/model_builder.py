@@ -18,14 +18,14 @@ import numpy as np
 
 from ..fitting.fit import prepare
 from ..fitting.left_over import quieter
-from ..fitting.levenberg import Levenberg, minimise
-from ..fitting.problem import Problem, Unknowns
 from ..fitting.score import Score, begin_anew, score
 from ..fitting.setup import free_names, held_system, make_problem
-from ..fitting.windows import Layout, Windows
 from ..mechanics import AbstractEffect, catalogue
 from ..parameters import specs
 from ..records import Record
+from ..shooting.levenberg import Levenberg, minimise
+from ..shooting.problem import Problem, Unknowns
+from ..shooting.windows import Layout, Windows
 from ..system import System
 from .along_motion import own_states
 from .fitted_model import FittedModel

@@ -10,14 +10,14 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..fitting.continuation import LOOSEST, TIGHTEST, Continued, continued, in_one_run, log_evidence, sharpened, tied
-from ..fitting.levenberg import Levenberg, Minimum, minimise
-from ..fitting.problem import Unknowns
 from ..fitting.search import freedom
 from ..fitting.setup import first_guess, read_through
 from ..fitting.stick_slip import sticks_and_slips
 from ..mechanics import AbstractEffect
 from ..parameters import values, with_values
 from ..records import Record
+from ..shooting.levenberg import Levenberg, Minimum, minimise
+from ..shooting.problem import Unknowns
 from ..system import System
 from .evidence import correlation_length, leaves_noise, measures_only
 from .fitted_model import FittedModel

@@ -10,11 +10,11 @@ from __future__ import annotations
 import equinox as eqx
 import numpy as np
 
-from ..fitting.levenberg import Levenberg, minimise
-from ..fitting.problem import Problem, Unknowns
-from ..fitting.shooting import Prediction
 from ..mechanics import AbstractEffect
 from ..records import Record
+from ..shooting.levenberg import Levenberg, minimise
+from ..shooting.multiple_shooting import Prediction
+from ..shooting.problem import Problem, Unknowns
 from .fitted_model import FittedModel
 from .model_builder import ModelBuilder
 

@@ -11,12 +11,12 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..fitting import Fit, Score
-from ..fitting.problem import Unknowns
 from ..fitting.setup import make_problem
 from ..frames import dataframe
 from ..mechanics import AbstractEffect
 from ..parameters import free_specs, specs, values
 from ..precision import require_double_precision
+from ..shooting.problem import Unknowns
 from ..showing import Shown
 from ..system import System
 from .candidates import Candidate, share_of_rest

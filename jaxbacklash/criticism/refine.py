@@ -18,7 +18,6 @@ from ..fitting.equation_error import Start
 from ..fitting.estimates import inflation, judge
 from ..fitting.fit import ABSOLUTE, prepare
 from ..fitting.left_over import predict, why_open
-from ..fitting.problem import Problem, Unknowns
 from ..fitting.result import Fit
 from ..fitting.score import Score
 from ..fitting.search import ADEQUATE, inverse_information, silent
@@ -28,6 +27,7 @@ from ..fitting.stick_slip import correlation
 from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..records.force import tell_way
+from ..shooting.problem import Problem, Unknowns
 from ..system import System
 from .evidence_search import EvidenceSearch
 from .experiment import separate

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import equinox as eqx
 import numpy as np
 
-from ..fitting.levenberg import Levenberg, minimise
 from ..pointwise import along
+from ..shooting.levenberg import Levenberg, minimise
 from ..system import System
 from .along_motion import Motion
 from .evidence import SURE, demanded, most_of_noise

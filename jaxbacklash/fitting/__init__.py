@@ -1,4 +1,4 @@
-"""From records to parameters: windows, shooting, the block tridiagonal solver, intervals."""
+"""From records to parameters: starts, the search, intervals and scores, on the windows of `jaxbacklash.shooting`."""
 
 from .compare import Comparison as Comparison
 from .compare import compare as compare

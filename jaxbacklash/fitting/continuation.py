@@ -8,7 +8,7 @@ log-determinant of the windows' own unknowns comes with the block tridiagonal el
 A fit goes from a large q to smaller ones as long as the evidence rises (to larger ones, where the first was too small already),
 each fit begun where the last one ended, and ends at the likeliest q, or at q = 0 where the likelihood ratio does not speak
 against it. Dry friction is softened on the way, over a range of speed that narrows with q: a jump that q allows hides what the
-softening changes. See `jaxbacklash.fitting.levenberg` for the steps, `jaxbacklash.criticism.model_fitter` for who asks.
+softening changes. See `jaxbacklash.shooting.levenberg` for the steps, `jaxbacklash.criticism.model_fitter` for who asks.
 
 Source: MacKay, Neural Computation 4 (1992) 415, on the evidence of a hyperparameter by Laplace's approximation; Allgower and
 Georg, Introduction to Numerical Continuation Methods (2003).
@@ -24,11 +24,11 @@ import numpy as np
 
 from ..mechanics import AbstractEffect
 from ..parameters import specs, values
+from ..shooting.levenberg import Levenberg, Minimum, minimise
+from ..shooting.multiple_shooting import tie_weights
+from ..shooting.problem import Problem, Unknowns
 from .friction_homotopy import with_friction_widths
-from .levenberg import Levenberg, Minimum, minimise
-from .problem import Problem, Unknowns
 from .search import freedom
-from .shooting import tie_weights
 from .stick_slip import search_stick_slip
 
 LOOSEST, TIGHTEST = 1e-4, 100.0

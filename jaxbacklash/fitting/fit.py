@@ -16,6 +16,8 @@ from ..parameters import values, with_values
 from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..records.force import tell_way
+from ..shooting.lengths import PANELS, longest_panel, score_window, shooting_window
+from ..shooting.windows import Layout, Windows, crossing_time, cut
 from ..system import System
 from .answers import check_answers
 from .chance import explains
@@ -23,7 +25,6 @@ from .equation_error import Start
 from .estimates import UNDETERMINED, Estimate, inflation, judge
 from .hard import SHORTEST, SUSPECT, contact_samples, harder, most_play, travel_in_contact
 from .left_over import EXPLAINED, predict, settle_noise, why_open
-from .lengths import PANELS, longest_panel, score_window, shooting_window
 from .profile import with_profiles
 from .result import Fit
 from .score import Score, begin_anew, score
@@ -31,7 +32,6 @@ from .search import Found, misfit, search, silent
 from .setup import base_system, check_motion, free_names, make_problem
 from .size import check_size
 from .stick_slip import sticks_and_slips
-from .windows import Layout, Windows, crossing_time, cut
 
 ABSOLUTE = ("force", "transmitted")
 """Kinds of record with a measured force, which need no inertia to tell a stiffness."""

@@ -14,7 +14,7 @@ import equinox as eqx
 import numpy as np
 
 from ..parameters import values
-from .problem import Problem
+from ..shooting.problem import Problem
 
 
 def with_friction_widths(problem: Problem, widths: dict[str, float]) -> Problem:

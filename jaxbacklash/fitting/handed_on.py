@@ -14,10 +14,10 @@ import itertools
 import equinox as eqx
 import numpy as np
 
-from .levenberg import Levenberg, Minimum, minimise
-from .problem import Problem, Unknowns
+from ..shooting.levenberg import Levenberg, Minimum, minimise
+from ..shooting.multiple_shooting import weighed
+from ..shooting.problem import Problem, Unknowns
 from .setup import read_through
-from .shooting import weighed
 
 WORSE, MATTERS, FEW = 5.0, 0.01, 0.05
 """A window has stuck that misses by so many times the median square; it matters where such windows hold that share of all misfit,

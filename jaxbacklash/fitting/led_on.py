@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..shooting.levenberg import Levenberg, Minimum, minimise
+from ..shooting.problem import Problem, Unknowns
 from .handed_on import WORSE, begun, led_in, squares_of
-from .levenberg import Levenberg, Minimum, minimise
-from .problem import Problem, Unknowns
 from .setup import at_rest
 
 LEADS, GAIN = 8, 0.01

@@ -15,11 +15,11 @@ import equinox as eqx
 import numpy as np
 
 from ..records import Record
+from ..shooting.problem import Problem
+from ..shooting.windows import Layout, Windows
 from ..signals import estimate_noise, rounding_noise
-from .problem import Problem
 from .score import Score, begin_anew, score
 from .setup import first_guess
-from .windows import Layout, Windows
 
 if TYPE_CHECKING:
     from .search import Found

@@ -9,9 +9,9 @@ import equinox as eqx
 import numpy as np
 from scipy.optimize import brentq
 
+from ..shooting.levenberg import Levenberg, minimise
+from ..shooting.problem import Problem, Unknowns
 from .estimates import NORMAL_95, Estimate
-from .levenberg import Levenberg, minimise
-from .problem import Problem, Unknowns
 
 
 def with_profiles(

@@ -15,15 +15,15 @@ import numpy as np
 from ..compiled import kept_jit
 from ..frames import dataset
 from ..parameters import values, with_values
+from ..shooting.lengths import SCORE_WINDOW
+from ..shooting.levenberg import Levenberg, Minimum, minimise
+from ..shooting.multiple_shooting import residuals
+from ..shooting.problem import Problem, Unknowns
+from ..shooting.windows import Layout
 from ..showing import Shown
 from .handed_on import follows, handed_on
 from .led_on import led_on
-from .lengths import SCORE_WINDOW
-from .levenberg import Levenberg, Minimum, minimise
-from .problem import Problem, Unknowns
 from .setup import first_guess
-from .shooting import residuals
-from .windows import Layout
 
 NEAR = 1e-4
 """How much of half the sum of squares, in units of the noise, may be left to gain a window when a score is told."""

@@ -9,14 +9,14 @@ import equinox as eqx
 import numpy as np
 
 from ..errors import NoAnswer
+from ..shooting.levenberg import Levenberg, Minimum, minimise
+from ..shooting.problem import Problem, Unknowns
+from ..shooting.windows import Windows
 from ..system import System
 from .handed_on import handed_on
-from .levenberg import Levenberg, Minimum, minimise
-from .problem import Problem, Unknowns
 from .setup import first_guess, make_problem
 from .stick_slip import correlation, search_stick_slip, sticks_and_slips
 from .stretch import excess_of, stretch, told
-from .windows import Windows
 
 LOOSE = 2.5
 """A run along the smoothed base motion may miss by this much before the base motion is let free within its noise."""

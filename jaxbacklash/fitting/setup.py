@@ -15,12 +15,12 @@ from ..errors import BadInput
 from ..mechanics import AbstractEffect, Drive, canonical_name, catalogue, motion_of
 from ..parameters import ravel, specs, values, with_values
 from ..records import Record
+from ..shooting.problem import Problem, Unknowns
+from ..shooting.windows import Windows
 from ..system import System, observe
 from .equation_error import Start, estimate
 from .loop import read_loop
-from .problem import Problem, Unknowns
 from .stick_slip import march, place, sticks_and_slips
-from .windows import Windows
 
 MODELS = ("joint", "linear", "free")
 UNLIKE_A_LOOP = 0.5

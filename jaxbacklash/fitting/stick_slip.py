@@ -17,12 +17,12 @@ import numpy as np
 
 from ..effects import Contact
 from ..mechanics import Drive
+from ..shooting.chunks import scan_used
+from ..shooting.input_spline import local_coefficients
+from ..shooting.levenberg import Levenberg, minimise
+from ..shooting.multiple_shooting import trajectory
+from ..shooting.problem import Problem, Unknowns
 from ..system import System
-from .chunks import scan_used
-from .input_spline import local_coefficients
-from .levenberg import Levenberg, minimise
-from .problem import Problem, Unknowns
-from .shooting import trajectory
 
 Array = Any
 TIE = 100.0

@@ -5,9 +5,9 @@ from __future__ import annotations
 import equinox as eqx
 import numpy as np
 
-from .levenberg import Minimum
-from .problem import Problem, Unknowns
-from .shooting import per_window
+from ..shooting.levenberg import Minimum
+from ..shooting.multiple_shooting import per_window
+from ..shooting.problem import Problem, Unknowns
 
 STRETCH = 64
 """Windows of a stretch, the last of which holds no sample."""

@@ -29,7 +29,7 @@ def misfit_and_torque(dependences: Sequence[Any], *, unit: str, ax: Where = None
 
     Parameters
     ----------
-    dependences : see `jaxbacklash.criticism.Dependence` for what each holds; at most three are drawn
+    dependences : see `jaxbacklash.residuals.Dependence` for what each holds; at most three are drawn
     unit : of the torque
     ax : where to draw
     """

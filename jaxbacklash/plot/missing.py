@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..criticism import Findings, Latent, Surface
-from ..criticism.surface import LABELS
 from ..effects.learned import UNITS
 from ..errors import BadInput
+from ..residuals import Findings, Latent, Surface
+from ..residuals.surface import LABELS
 from .drawing import Drawn, Where, empty, picture
 from .failures import misfit_and_torque, missing_torque_curve, missing_torque_in_time, missing_torque_surface
 

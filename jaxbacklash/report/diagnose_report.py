@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 from .. import plot
-from ..criticism import Findings, Surface
 from ..fitting import Fit
 from ..plot.drawing import svg_of
 from ..plot.models import candidate_ranking
+from ..residuals import Findings, Surface
 from .fit_report import pictures, series
 from .html import Panel, write_report
 

@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 
 from ..causes import Cause
-from ..criticism import Findings, Latent, Ranking, Refinement, Surface
+from ..criticism import Ranking, Refinement
 from ..criticism.refinement import alternatives_sentence, doubted
-from ..criticism.surface import LABELS
 from ..fitting import Comparison, Fit, Score, percent
 from ..fitting.result import doubt, verdict_text
 from ..plot.style import format_evidence, short
 from ..plot.words import stage_name
+from ..residuals import Findings, Latent, Surface
+from ..residuals.surface import LABELS
 from .card import Card, Grid, Picture, card_of, grid, name_of
 from .result import stage as stage_json
 from .summary import parameter_rows

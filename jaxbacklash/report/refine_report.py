@@ -7,10 +7,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..criticism import Findings, Refinement
+from ..criticism import Refinement
 from ..fitting import error_in_words
 from ..plot.drawing import svg_of
 from ..plot.models import candidate_ranking, error_by_stage
+from ..residuals import Findings
 from .diagnose_report import failure_panels
 from .fit_report import pictures, series
 from .html import Panel, write_report

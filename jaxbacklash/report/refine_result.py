@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..criticism import Findings, Refinement
+from ..criticism import Refinement
 from ..criticism.experiment import Experiment
 from ..criticism.ranking import Ranking, of_stage
 from ..criticism.refinement import Moved, alternatives_sentence, doubted, steps
@@ -14,6 +14,7 @@ from ..effects import Contact
 from ..errors import BadInput, NoAnswer
 from ..fitting import Fit
 from ..fitting.equation_error import estimate
+from ..residuals import Findings
 from .result import as_json as fit_json
 from .result import cross_check, finite
 from .result import stage as stage_json

@@ -1,8 +1,8 @@
 """Levenberg-Marquardt for normal equations that come in blocks, as an optimistix least-squares solver.
 
-`jaxbacklash.fitting.levenberg` hands it to `optimistix.least_squares` with the residual of multiple shooting. What optimistix
-would do by automatic differentiation of that residual, `jaxbacklash.fitting.shooting.linearise` and
-`jaxbacklash.fitting.damped_step` do in time linear in the number of windows: CONTRIBUTING.md compares the two.
+`jaxbacklash.shooting.levenberg` hands it to `optimistix.least_squares` with the residual of multiple shooting. What optimistix
+would do by automatic differentiation of that residual, `jaxbacklash.shooting.multiple_shooting.linearise` and
+`jaxbacklash.shooting.damped_step` do in time linear in the number of windows: CONTRIBUTING.md compares the two.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ import jax.numpy as jnp
 import optimistix as optx
 
 from .damped_step import solve
+from .multiple_shooting import Blocks, Prediction, Shot, linearise
 from .problem import Problem, Unknowns
-from .shooting import Blocks, Prediction, Shot, linearise
 
 Array = Any
 _linearise = eqx.filter_jit(linearise)  # traced once, though a search writes it down twice
@@ -49,8 +49,8 @@ class SearchState(eqx.Module):
 class BlockLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
     """Levenberg-Marquardt that solves the normal equations by blocks, within bounds.
 
-    ``fn`` is `jaxbacklash.fitting.shooting.residual_rows`, which returns the `Shot` beside the rows; `linearise` takes its
-    Jacobian. The first four are those of `jaxbacklash.fitting.levenberg.Levenberg`.
+    ``fn`` is `jaxbacklash.shooting.multiple_shooting.residual_rows`, which returns the `Shot` beside the rows; `linearise`
+    takes its Jacobian. The first four are those of `jaxbacklash.shooting.levenberg.Levenberg`.
     """
 
     rtol: Array = 0.0

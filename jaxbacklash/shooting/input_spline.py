@@ -1,6 +1,6 @@
 """The input of each shooting window from the coefficients of its quintic spline, and how it moves with them and with a lag.
 
-Base motion, or a smooth force; `jaxbacklash.fitting.shooting` runs the windows with it.
+Base motion, or a smooth force; `jaxbacklash.shooting.multiple_shooting` runs the windows with it.
 """
 
 from __future__ import annotations

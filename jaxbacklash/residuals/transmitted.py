@@ -14,12 +14,12 @@ import numpy as np
 from scipy import linalg
 
 from ..fitting import Fit
-from ..fitting.input_spline import local_coefficients
-from ..fitting.problem import Problem, Unknowns
-from ..fitting.shooting import trajectory
 from ..mechanics import Drive
 from ..parameters import unit_text
 from ..pointwise import along
+from ..shooting.input_spline import local_coefficients
+from ..shooting.multiple_shooting import trajectory
+from ..shooting.problem import Problem, Unknowns
 from .latent import MOTION, NODES, Latent, record_rows
 from .shares import out_of_sample, weights
 from .surface import SETS, Surface

@@ -10,8 +10,8 @@ import jax
 import numpy as np
 
 from ..compiled import kept_jit
+from .multiple_shooting import residual_rows
 from .problem import Problem, Unknowns
-from .shooting import residual_rows
 
 Array = Any
 MOST = 1000

@@ -1,6 +1,6 @@
 r"""The step of a Levenberg-Marquardt search: normal equations by blocks in, a step within the parameters' bounds out.
 
-`jaxbacklash.fitting.block_tridiagonal` eliminates the windows; what is left, a dense system of the parameters, is solved here.
+`jaxbacklash.shooting.block_tridiagonal` eliminates the windows; what is left, a dense system of the parameters, is solved here.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import equinox as eqx
 import jax.numpy as jnp
 
 from .block_tridiagonal import eliminate
-from .shooting import Blocks
+from .multiple_shooting import Blocks
 
 Array = Any
 

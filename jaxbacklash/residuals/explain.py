@@ -15,8 +15,8 @@ import jax.numpy as jnp
 import jax.scipy.linalg as jsl
 
 from ..compiled import kept_jit
-from ..fitting.block_tridiagonal import Factor, bordered, solve_lower
-from ..fitting.shooting import Blocks
+from ..shooting.block_tridiagonal import Factor, bordered, solve_lower
+from ..shooting.multiple_shooting import Blocks
 from .smoother import Point, Smoother, prior, solve, solve_parameters, torque_places
 
 Array = Any

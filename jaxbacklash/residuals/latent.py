@@ -22,14 +22,14 @@ import numpy as np
 from ..errors import NoAnswer
 from ..fitting import Fit
 from ..fitting.fit import prepare
-from ..fitting.problem import Problem, Unknowns
 from ..fitting.setup import first_guess, free_names, make_problem
-from ..fitting.shooting import Blocks, Trajectory
 from ..frames import dataframe
 from ..parameters import unit_text, values, with_values
 from ..pointwise import along
 from ..precision import require_double_precision
 from ..records import Record
+from ..shooting.multiple_shooting import Blocks, Trajectory
+from ..shooting.problem import Problem, Unknowns
 from ..showing import Shown
 from ..system import System
 from .smoother import Improved, Point, Smoother, finish, improve, make_hats, misfit

@@ -7,7 +7,7 @@ The matrix of W windows, each with B unknowns of its own that meet only those of
 
 T (W B, W B) is block tridiagonal, E (W B, q) the border, C (q, q) the corner, and S, the Schur complement, the information about
 the parameters with all windows' unknowns marginalised. Every operation takes time in proportion to W. The step of a fit
-(`jaxbacklash.fitting.damped_step`) and the smoother (`jaxbacklash.criticism.smoother`) both use it, and both choose the
+(`jaxbacklash.shooting.damped_step`) and the smoother (`jaxbacklash.residuals.smoother`) both use it, and both choose the
 parameters' step themselves: one has bounds, the other a prior.
 
 Source: Golub and Van Loan, Matrix Computations, 4th edition (2013), section 4.5; the diagonal of the inverse after Erisman and

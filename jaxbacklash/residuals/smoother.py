@@ -18,10 +18,9 @@ import jax.scipy.linalg as jsl
 import numpy as np
 
 from ..compiled import kept_jit, lasting_jit
-from ..fitting.block_tridiagonal import Eliminated, eliminate, inverse_diagonal, solve_upper
-from ..fitting.input_spline import local_coefficients
-from ..fitting.problem import Problem, Unknowns
-from ..fitting.shooting import (
+from ..shooting.block_tridiagonal import Eliminated, eliminate, inverse_diagonal, solve_upper
+from ..shooting.input_spline import local_coefficients
+from ..shooting.multiple_shooting import (
     Blocks,
     Prediction,
     Trajectory,
@@ -32,6 +31,7 @@ from ..fitting.shooting import (
     tie_weights,
     trajectory,
 )
+from ..shooting.problem import Problem, Unknowns
 from ..signals import DEGREE
 
 Array = Any
