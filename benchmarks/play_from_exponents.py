@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 import jaxbacklash as jb
-from jaxbacklash.signature import ExponentMap, Level, exponent_map, play_from_exponents, worth
+from jaxbacklash.signature import ExponentMap, Level, expected_precision, exponent_map, play_from_exponents
 from tests.drive_levels import AMPLITUDES, FREQUENCY, INERTIA, Twin
 
 PLAYS = np.radians([1.2, 2.4])
@@ -54,12 +54,12 @@ def imagined(map_: ExponentMap, twin: Twin, options: argparse.Namespace) -> None
     count = 10 if options.tiny else options.experiments
     plays = (float(PLAYS[0]), float(PLAYS[1]))
     print(f"{count} imagined experiments a row, plays {np.degrees(PLAYS[0]):.1f} to {np.degrees(PLAYS[1]):.1f} deg")
-    found = {name: worth(map_, levels, plays, experiments=count, seed=1) for name, levels in ladders().items()}
+    found = {name: expected_precision(map_, levels, plays, experiments=count, seed=1) for name, levels in ladders().items()}
     for name, one in found.items():
         print(f"  {name:<40}{one}", flush=True)
     for words, error, drive in (("to 1 %, drive to 0.2 %", 0.01, 0.002), ("to 30 %", 0.3, 0.01)):
         given = {"stderr": error, "systematic": 0.2 * error, "drive_error": drive}
-        one = worth(map_, AMPLITUDES, plays, experiments=count, seed=1, **given)
+        one = expected_precision(map_, AMPLITUDES, plays, experiments=count, seed=1, **given)
         print(f"  {'8, exponents ' + words:<40}{one}", flush=True)
     rig = twin.rig
     if not options.tiny:
@@ -67,18 +67,18 @@ def imagined(map_: ExponentMap, twin: Twin, options: argparse.Namespace) -> None
             "damping": [f * rig.damping for f in (0.6, 1.0, 1.4)], "linear_gravity.G": [-110.0, -90.0, -70.0],
         }  # fmt: skip
         unknown = map_of(twin, options.tiny, over)
-        one = worth(unknown, AMPLITUDES, plays, experiments=count, seed=1, truth=map_)
+        one = expected_precision(unknown, AMPLITUDES, plays, experiments=count, seed=1, truth=map_)
         print(f"  {'damping +-40 %, weight +-22 % unknown':<40}{one}", flush=True)
         for words, index in (("damping taken 40 % too high", (2, 1)), ("weight taken 22 % too low", (1, 2))):
             wrong = replace(unknown, axes={}, exponent=unknown.exponent[:, *index], stderr=unknown.stderr[:, *index])
-            one = worth(wrong, AMPLITUDES, plays, experiments=count, seed=1, truth=map_)
+            one = expected_precision(wrong, AMPLITUDES, plays, experiments=count, seed=1, truth=map_)
             print(f"  {words:<40}{one}", flush=True)
     if options.out is not None:
         from jaxbacklash.plot.drawing import on_page
 
         options.out.mkdir(parents=True, exist_ok=True)
         shown = {name: found[name] for name in ("3 levels", "the paper's 8", "32 levels")}
-        on_page(jb.plot.worth, shown).savefig(options.out / "worth_over_play.png", dpi=150)
+        on_page(jb.plot.expected_precision, shown).savefig(options.out / "worth_over_play.png", dpi=150)
 
 
 def measured(map_: ExponentMap, options: argparse.Namespace) -> None:

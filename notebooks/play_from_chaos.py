@@ -55,13 +55,13 @@ plt.show()
 amplitudes = np.radians([1.34, 2.07, 2.68, 3.41, 3.65, 3.78, 4.87, 5.73])
 possible = (np.radians(1.2), np.radians(2.1))
 experiments = 20 if TINY else 200
-few = jb.signature.worth(curve, amplitudes[[0, 3, 6]], possible, experiments=experiments)
-many = jb.signature.worth(curve, amplitudes, possible, experiments=experiments)
+few = jb.signature.expected_precision(curve, amplitudes[[0, 3, 6]], possible, experiments=experiments)
+many = jb.signature.expected_precision(curve, amplitudes, possible, experiments=experiments)
 print(few)
 print(many)
 
 # %%
-jb.plot.worth({"three levels": few, "eight levels": many})
+jb.plot.expected_precision({"three levels": few, "eight levels": many})
 plt.show()
 
 # %% [markdown]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from jaxbacklash.records.findings.channel import Channel
-from jaxbacklash.records.findings.held import _at_least, _by_size, stale_rows
+from jaxbacklash.records.findings.held_values import _at_least, _by_size, stale_rows
 
 
 def written(noise, digits, significant, seed):

@@ -86,7 +86,7 @@ def test_what_is_not_its_own_stays_as_it_is(call, tmp_path, before):
 
 def test_what_somebody_put_beside_the_tiles_stays(call, tmp_path):
     store = tmp_path / "m.nc.tiles"
-    tile_folder.claim(store, "0" * 64)
+    tile_folder.reserve(store, "0" * 64)
     (store / "notes.txt").write_text("mine")
     (store / "sub").mkdir()
     assert tile_folder.remove(store) == ["notes.txt", "sub"]
@@ -156,7 +156,7 @@ def test_a_full_disk_keeps_the_tiles_before(tmp_path, monkeypatch):
 
 def test_two_maps_into_one_file(tmp_path):
     store = tmp_path / "store"
-    tile_folder.claim(store, "0" * 64)
+    tile_folder.reserve(store, "0" * 64)
     code = (
         "import sys, time\nfrom pathlib import Path\nfrom jaxbacklash.dynamics.tile_folder import used_alone\n"
         "with used_alone(Path(sys.argv[1])):\n    print('in', flush=True)\n    time.sleep(60)\n"
@@ -177,7 +177,7 @@ def test_two_maps_into_one_file(tmp_path):
 
 def test_a_lock_that_is_a_link_to_a_device_does_not_hold(tmp_path):
     store = tmp_path / "store"
-    tile_folder.claim(store, "0" * 64)
+    tile_folder.reserve(store, "0" * 64)
     (store / "lock").symlink_to("/dev/zero")
     done = []
 

@@ -9,13 +9,13 @@ from jaxbacklash.criticism.evidence_search import EvidenceSearch
 from jaxbacklash.criticism.model_builder import ModelBuilder
 from jaxbacklash.criticism.model_fitter import ModelFitter
 from jaxbacklash.effects import Contact, Damper
-from jaxbacklash.fitting.answers import check_answers
 from jaxbacklash.fitting.estimates import judge
 from jaxbacklash.fitting.fit import prepare
 from jaxbacklash.fitting.handed_on import led_in
 from jaxbacklash.fitting.hard import reach_of_sampling
 from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
-from jaxbacklash.fitting.size import MOST_SAMPLES, check_size, needed_rate
+from jaxbacklash.records.relative_motion import check_answers
+from jaxbacklash.records.size import MOST_SAMPLES, check_size, needed_rate
 from jaxbacklash.shooting.levenberg import Levenberg, minimise
 from jaxbacklash.system import System
 from tests.independent.free_play import decay

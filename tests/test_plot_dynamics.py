@@ -206,9 +206,9 @@ def test_signatures():
     drawn = lower.collections[0].get_paths()[0].vertices
     assert drawn[:, 1].max() == pytest.approx(found.density.max())
     assert len(upper.collections) == len(found.levels)
-    wanted = jb.signature.worth(map_, AMPLITUDES, (0.021, 0.045), experiments=5)
-    ax = one(plot.worth, wanted)
-    some = wanted.determined & wanted.held
+    wanted = jb.signature.expected_precision(map_, AMPLITUDES, (0.021, 0.045), experiments=5)
+    ax = one(plot.expected_precision, wanted)
+    some = wanted.determined & wanted.covered
     assert curve(ax, np.degrees(wanted.play)[some], 100.0 * wanted.half_width[some])
     over = made_up(np.stack([row, np.roll(row, 40), -np.ones_like(row)]), {"linear_gravity.G": np.array([-60.0, -30.0, 0.0])})
     seen = np.array([False, False, True, True, True, True, False, False])

@@ -66,7 +66,11 @@ RESULTS = {
     "basins": (basins, "75.0 %", 1),
     "motion": (motion, "41 samples", 1),
     "play": (lambda: jb.signature.play_from_exponents(windowed(), levels()), "exponent per drive period", 1),
-    "worth": (lambda: jb.signature.worth(windowed(), AMPLITUDES, (0.021, 0.045), experiments=3), "3 imagined experiments", 1),
+    "expected_precision": (
+        lambda: jb.signature.expected_precision(windowed(), AMPLITUDES, (0.021, 0.045), experiments=3),
+        "3 imagined experiments",
+        1,
+    ),
     "curve": (windowed, "401 ratios", 1),
     "pattern": (match, "linear_gravity.G", 1),
 }
@@ -233,8 +237,8 @@ def test_motions_and_models_as_frames():
     np.testing.assert_array_equal(map_.to_dataset().exponent, map_.exponent)
     play = jb.signature.play_from_exponents(map_, levels())
     np.testing.assert_array_equal(play.to_dataset().density, play.density)
-    worth = jb.signature.worth(map_, AMPLITUDES, (0.021, 0.045), experiments=3)
-    np.testing.assert_array_equal(worth.to_dataframe().play, worth.play)
+    precision = jb.signature.expected_precision(map_, AMPLITUDES, (0.021, 0.045), experiments=3)
+    np.testing.assert_array_equal(precision.to_dataframe().play, precision.play)
     pattern = match()
     np.testing.assert_array_equal(pattern.to_dataset().chance, pattern.chance)
 

@@ -10,7 +10,7 @@ from jaxbacklash.effects import GapSpring, LinearGravity, Preload
 from jaxbacklash.errors import BadInput
 from jaxbacklash.excitation import Harmonic
 from jaxbacklash.models import linear_oscillator
-from jaxbacklash.signature import ExponentMap, Level, exponent_map, match_pattern, play_from_exponents, worth
+from jaxbacklash.signature import ExponentMap, Level, expected_precision, exponent_map, match_pattern, play_from_exponents
 from tests.independent import exponents
 
 FREQUENCY, INERTIA = 1.54, 3.16
@@ -112,8 +112,8 @@ def test_regimes_alone_bracket_the_play():
 @pytest.mark.parametrize(("map_", "levels"), [(windowed(), 8), (straight(), 3)], ids=["windows", "straight"])
 def test_intervals_hold_the_truth_as_often_as_they_say(map_, levels):
     amplitudes = np.geomspace(AMPLITUDES[0], AMPLITUDES[-1], levels)
-    found = worth(map_, amplitudes, (np.radians(1.2), np.radians(2.6)), experiments=400, seed=3)
-    share, deviation = found.held[found.determined].mean(), np.sqrt(0.95 * 0.05 / found.determined.sum())
+    found = expected_precision(map_, amplitudes, (np.radians(1.2), np.radians(2.6)), experiments=400, seed=3)
+    share, deviation = found.covered[found.determined].mean(), np.sqrt(0.95 * 0.05 / found.determined.sum())
     assert abs(share - 0.95) < 3.0 * deviation
     assert found.determined.mean() > 0.9
     # More levels, narrower intervals; and they beat what was thought possible before by far.

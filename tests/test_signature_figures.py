@@ -6,7 +6,7 @@ import pytest
 from jaxbacklash import plot
 from jaxbacklash.plot import twins
 from jaxbacklash.plot.drawing import on_page, svg_of, to_svg
-from jaxbacklash.signature import Level, match_pattern, play_from_exponents, worth
+from jaxbacklash.signature import Level, expected_precision, match_pattern, play_from_exponents
 
 from .test_signature import AMPLITUDES, made_up, windowed
 
@@ -41,17 +41,17 @@ def test_the_likelihood_has_a_row_a_level_and_the_truth():
     assert "likelihood" in svg_of(plot.play_likelihood, found)
 
 
-def test_patterns_and_worth():
+def test_patterns_and_expected_precision():
     base = windowed().exponent[0]
     map_ = made_up(np.stack([base, np.roll(base, 40), -np.ones_like(base)]), {"linear_gravity.G": np.array([-60.0, -30.0, 0.0])})
     match = match_pattern(map_, AMPLITUDES, [False, False, True, True, True, True, False, False], np.radians([1.4, 1.5, 1.6]))
     assert "gravity G" in svg_of(plot.pattern_region, match)
     assert "no two axes" in svg_of(plot.pattern_region, match, across="damping")
-    one = worth(windowed(), AMPLITUDES, (0.021, 0.045), experiments=6)
-    nothing = worth(made_up(np.ones(301)), AMPLITUDES, (0.021, 0.045), experiments=3)
+    one = expected_precision(windowed(), AMPLITUDES, (0.021, 0.045), experiments=6)
+    nothing = expected_precision(made_up(np.ones(301)), AMPLITUDES, (0.021, 0.045), experiments=3)
     assert not nothing.determined.any()
     assert "comes out of 0 %" in str(nothing)
-    assert "no play determined" in svg_of(plot.worth, {"eight": one, "flat": nothing})
+    assert "no play determined" in svg_of(plot.expected_precision, {"eight": one, "flat": nothing})
 
 
 @pytest.mark.parametrize("paper", [None, np.array([0.0, 1.4])])

@@ -21,7 +21,7 @@ from .bench import Bench, Point
 from .cause import Cause
 from .kinds import Clock, Delay, Inertia, Kind, Scale, Turned
 from .screen import misfit, part_of
-from .shown import Held, HeldStart, Limit, Step, stepped
+from .shown import HeldSamples, HeldStart, Limit, StepChange, stepped
 from .words import told
 
 LARGE = 3.0
@@ -152,11 +152,11 @@ def _screened(fit: Fit, record: Record) -> Start | None:
 def shown_kinds(record: Record) -> list[Kind]:
     """Kinds of cause that can be seen in the samples."""
     own = record.observed_name
-    found: list[Kind] = [Held(own), HeldStart(own)]
+    found: list[Kind] = [HeldSamples(own), HeldStart(own)]
     for channel in (own, *(c for c in ("x",) if c in record.channels)):
         at = stepped(record, channel)
         if at is not None:
-            found.append(Step(channel, at=at))
+            found.append(StepChange(channel, at=at))
     return found
 
 
@@ -191,7 +191,7 @@ def _judged(bench: Bench, kind: Kind, point: Point, tried: int) -> Cause | None:
     fit = bench.fit
     scores = bench.score(point)
     left, before = max(s.rms for s in scores), max(s.rms for s in fit.scores)
-    noise = kind.noise(fit.records[0], int(point.size)) if isinstance(kind, Held) else fit.noise[0]
+    noise = kind.noise(fit.records[0], int(point.size)) if isinstance(kind, HeldSamples) else fit.noise[0]
     before = before * fit.noise[0] / noise
     explained = not any(misses(s, len(fit.system.state_names)) for s in scores)
     fall = (before**2 / max(left, 1.0) ** 2 - 1.0) * point.freedom

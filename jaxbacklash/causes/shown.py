@@ -20,7 +20,7 @@ SIDE, CLEAR = 6, 12.0
 
 
 @dataclass(frozen=True)
-class Held(Kind):
+class HeldSamples(Kind):
     """The measured channel is refreshed only every few samples and repeats the last value between."""
 
     name, measured_only, unit = "held_samples", True, "samples"
@@ -78,7 +78,7 @@ class HeldStart(Kind):
 
 
 @dataclass(frozen=True)
-class Step(Kind):
+class StepChange(Kind):
     """Counts were lost at one sample: from there on the channel is off by a constant."""
 
     at: int = 0

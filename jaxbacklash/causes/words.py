@@ -8,15 +8,14 @@ from shlex import quote
 
 import numpy as np
 
-from ..fitting.estimates import Estimate
-from ..fitting.print_estimate import number
+from ..fitting.estimates import Estimate, number
 from ..fitting.result import Fit
 from ..parameters import channel_unit
 from ..records import Record
 from .bench import Point
 from .cause import Cause
 from .kinds import Kind
-from .shown import Step, first_fresh
+from .shown import StepChange, first_fresh
 
 
 def told(
@@ -90,7 +89,7 @@ def _inertia(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[st
     return words, f"--inertia {given * size:.4g}, or leave --inertia out", ""
 
 
-def _held(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str, str, str]:
+def _held_samples(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str, str, str]:
     record, every = fit.records[0], int(size)
     rate = record.rate_hz / every
     words = f"{kind.channel} is refreshed every {every} samples only ({rate:.4g} Hz) and repeats its last value between"
@@ -109,7 +108,7 @@ def _held_start(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple
 
 def _step(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str, str, str]:
     unit = channel_unit(kind.channel, translational=fit.translational)
-    assert isinstance(kind, Step)
+    assert isinstance(kind, StepChange)
     at = kind.at
     when = float(fit.records[0].t[at])
     words = f"{kind.channel} jumps by {size:.4g} {unit} at {when:.6g} s (row {at + 1}) and stays there: counts were lost"
@@ -123,6 +122,6 @@ def _limit(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str,
 
 
 _SAID = {
-    "delay": _delay, "clock": _clock, "scale": _scale, "sign": _sign, "inertia": _inertia, "held_samples": _held,
+    "delay": _delay, "clock": _clock, "scale": _scale, "sign": _sign, "inertia": _inertia, "held_samples": _held_samples,
     "held_start": _held_start, "step": _step, "force_limit": _limit,
 }  # fmt: skip

@@ -10,8 +10,8 @@ import numpy as np
 
 from .. import __version__
 from ..errors import BadInput
-from ..fitting.size import rate_for
 from ..records import MeasuredSeries
+from ..records.size import rate_for
 from ..report.chaos_result import chaos_json
 from ..timeseries import chaos
 from .common import json_text, out_folder, progress, write_text

@@ -21,7 +21,7 @@ from ..dynamics.follow import trace_exact
 from ..dynamics.maps import labelled_map
 from ..dynamics.netcdf import LARGEST, can_keep_tiles, write_netcdf
 from ..dynamics.request import Request, request
-from ..dynamics.tile_folder import claim, remove, used_alone
+from ..dynamics.tile_folder import remove, reserve, used_alone
 from ..errors import BadInput
 from ..whole_file import write_whole
 from .common import json_text, progress
@@ -57,7 +57,7 @@ def run(
     if store is None:
         fits_in_memory(wanted)
     else:
-        claim(store, wanted.fingerprint())
+        reserve(store, wanted.fingerprint())
     ready = time.perf_counter()
     start_up = process_age() or ready - begun
     alone = contextlib.nullcontext() if store is None else used_alone(store)

@@ -121,7 +121,7 @@ class ModelBuilder:
         """Information about all columns (q, q), their score (q,) and scales (q,), at a point."""
         still = Unknowns(np.zeros(problem.directions.shape[1]), unknowns.starts, unknowns.coefficients)
         stats = minimise(problem, still, Levenberg(limit=1)).stats
-        return np.asarray(stats["schur"]), np.asarray(stats["pull"]), np.sum(problem.directions, axis=0)
+        return np.asarray(stats["schur"]), np.asarray(stats["score"]), np.sum(problem.directions, axis=0)
 
     def grips(self, names: Iterable[str]) -> bool:
         """Whether a model with these effects holds its link by friction, so that its run is one trajectory."""

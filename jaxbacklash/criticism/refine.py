@@ -11,7 +11,6 @@ import equinox as eqx
 import numpy as np
 
 from ..errors import BadInput
-from ..fitting.answers import check_answers
 from ..fitting.chance import explains
 from ..fitting.counts import few_counts
 from ..fitting.equation_error import Start
@@ -22,11 +21,12 @@ from ..fitting.result import Fit
 from ..fitting.score import Score
 from ..fitting.search import ADEQUATE, inverse_information, silent
 from ..fitting.setup import base_system, free_names
-from ..fitting.size import check_size
 from ..fitting.stick_slip import correlation
 from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..records.force import tell_way
+from ..records.relative_motion import check_answers
+from ..records.size import check_size
 from ..shooting.problem import Problem, Unknowns
 from ..system import System
 from .evidence_search import EvidenceSearch

@@ -8,7 +8,7 @@ from typing import Any
 
 from ..causes import Cause
 from ..fitting import Fit, Score, measures, percent
-from ..fitting.print_estimate import line
+from ..fitting.estimates import line
 from ..fitting.result import DOUBTED, at_most, doubt
 from ..frames import dataframe, known
 from ..parameters import channel_unit

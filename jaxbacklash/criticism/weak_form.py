@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from scipy import linalg
 
-from ..fitting.averaged import Averaged
 from ..mechanics import AbstractEffect, canonical_name
 from ..parameters import ravel, specs
 from ..records import Record
+from ..records.averaged import Averaged
 from ..system import System
 from .along_motion import motion, own_torques, torques
 

@@ -39,7 +39,7 @@ from .located import default_panels
 from .normal_form import bare_joint, normal_form, not_linear, why_not
 
 Array = Any
-Step = Callable[[Array, Array], Array]
+Advance = Callable[[Array, Array], Array]
 
 
 class Exponents(NamedTuple):
@@ -143,12 +143,12 @@ def _run_system(args: Any, state: Array, periods: int, count: int, panels: int) 
     system, drive, period = args
     h, first = period / panels, begins(drive)
 
-    def stretch(k: Array, q: Array) -> Array:
+    def segment(k: Array, q: Array) -> Array:
         t = first + k * period
         after, _ = run_panels(system, t, tuple(q), drive.grid(t, h, panels), h, panels, system.switches)
         return jnp.stack(after)
 
-    return _grow(stretch, state, periods, count)
+    return _grow(segment, state, periods, count)
 
 
 @eqx.filter_jit
@@ -216,16 +216,16 @@ def field_spectrum(
 
 @eqx.filter_jit
 def _run_field(field: Any, state: Array, step: Array, stretches: int, steps: int, count: int) -> Any:
-    def stretch(k: Array, q: Array) -> Array:
+    def segment(k: Array, q: Array) -> Array:
         def one(q: Array, i: Array) -> Any:
             return rk4(lambda t, s: (field(t, s[0]),), (k * steps + i) * step, (q,), step)[0], None
 
         return jax.lax.scan(one, q, jnp.arange(float(steps)))[0]
 
-    return _grow(stretch, state, stretches, count)
+    return _grow(segment, state, stretches, count)
 
 
-def _grow(stretch: Step, state: Array, stretches: int, count: int) -> Any:
+def _grow(segment: Advance, state: Array, stretches: int, count: int) -> Any:
     """Tangent vectors carried stretch by stretch and made orthonormal after each; the logarithm of their growth so far."""
     frame = jnp.eye(state.size, count)
 
@@ -233,7 +233,7 @@ def _grow(stretch: Step, state: Array, stretches: int, count: int) -> Any:
         state, frame, growth = carry
 
         def push(direction: Array) -> tuple[Array, Array]:
-            return jax.jvp(lambda q: stretch(k, q), (state,), (direction,))
+            return jax.jvp(lambda q: segment(k, q), (state,), (direction,))
 
         after, moved = jax.vmap(push, in_axes=1, out_axes=(None, 1))(frame)
         frame, r = jnp.linalg.qr(moved)

@@ -24,7 +24,7 @@ FORMAT = "jaxbacklash tiles 1"
 CURE = "remove or rename it, or name another output"
 
 
-def claim(path: Path, fingerprint: str) -> None:
+def reserve(path: Path, fingerprint: str) -> None:
     """Make the folder for the tiles of one map, or find it as an earlier run of the same map left it.
 
     Parameters

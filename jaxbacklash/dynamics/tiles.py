@@ -18,7 +18,7 @@ import numpy as np
 from ..errors import BadInput, NoAnswer
 from ..whole_file import write_whole
 from .request import KEPT, VARIABLES, Request
-from .tile_folder import ARRAYS, RECORDS, claim
+from .tile_folder import ARRAYS, RECORDS, reserve
 
 
 class MemoryTiles:
@@ -51,7 +51,7 @@ class TileStore:
         zarr = need_zarr()
         self.path, self._boxes = path, wanted.tiles()
         self._solvers: dict[int, str] = {}
-        claim(path, wanted.fingerprint())
+        reserve(path, wanted.fingerprint())
         try:
             self.arrays = self._open(zarr, wanted)
         except Exception:  # missing, damaged or of another shape: made anew, and with it the tiles

@@ -10,12 +10,12 @@ import numpy as np
 from ..errors import BadInput, NoAnswer
 from ..parameters import channel_unit
 from ..records import Record, oriented
+from ..records.size import check_size
 from ..showing import Shown
 from ..system import System
 from .chance import near_noise
 from .fit import predict_with_noise
 from .score import Score, error_in_words
-from .size import check_size
 
 
 @dataclass(frozen=True)

@@ -16,10 +16,11 @@ from ..parameters import values, with_values
 from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..records.force import tell_way
+from ..records.relative_motion import check_answers
+from ..records.size import check_size
 from ..shooting.lengths import PANELS, longest_panel, score_window, shooting_window
 from ..shooting.windows import Layout, Windows, crossing_time, cut
 from ..system import System
-from .answers import check_answers
 from .chance import explains
 from .equation_error import Start
 from .estimates import UNDETERMINED, Estimate, inflation, judge
@@ -30,7 +31,6 @@ from .result import Fit
 from .score import Score, begin_anew, score
 from .search import Found, misfit, search, silent
 from .setup import base_system, check_motion, free_names, make_problem
-from .size import check_size
 from .stick_slip import sticks_and_slips
 
 ABSOLUTE = ("force", "transmitted")

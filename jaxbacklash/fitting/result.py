@@ -18,8 +18,7 @@ from ..system import System
 from .chance import beyond_chance, explains, near_noise
 from .counts import few_counts
 from .equation_error import Start
-from .estimates import Estimate
-from .print_estimate import line
+from .estimates import Estimate, line
 from .score import Score, error_in_words
 
 DOUBTED = "only if the model is right: it is not, see the verdict"

@@ -74,7 +74,7 @@ def place(system: System, t: Array, force: Array, level: Array) -> Array:
 
 
 def run(problem: Problem, theta: Any) -> tuple[Unknowns, dict[str, Any]]:
-    """One run with these parameters, and what it shows: ``cost``, ``schur``, ``pull``, ``predicted``."""
+    """One run with these parameters, and what it shows: ``cost``, ``schur``, ``score``, ``predicted``."""
     coefficients = np.asarray(problem.windows.coefficients)
     unknowns = Unknowns(np.asarray(theta), np.asarray(march(problem, theta, coefficients)), coefficients)
     tied = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIE))
@@ -91,9 +91,9 @@ def search_stick_slip(
     rows = float(np.sum(np.asarray(problem.windows.weight) > 0.0))
     damping, steps = 1e-2, 1
     while steps < limit and _sound(seen):
-        move = _step(seen["schur"], seen["pull"], damping)
+        move = _step(seen["schur"], seen["score"], damping)
         least_gain = 1e-2 * max(1.0, 2.0 * float(seen["cost"]) / rows)
-        if 0.5 * float(seen["pull"] @ move) < least_gain and damping < 1.0:
+        if 0.5 * float(seen["score"] @ move) < least_gain and damping < 1.0:
             break
         trial = _within(problem, theta, np.clip(theta + move, lower, problem.upper))
         further, shown = run(problem, trial)
@@ -114,7 +114,7 @@ def search_stick_slip(
 
 def _sound(seen: dict[str, Any]) -> bool:
     """Whether a run stayed finite, and so did its derivatives."""
-    return bool(np.isfinite(seen["cost"]) and np.all(np.isfinite(seen["schur"])) and np.all(np.isfinite(seen["pull"])))
+    return bool(np.isfinite(seen["cost"]) and np.all(np.isfinite(seen["schur"])) and np.all(np.isfinite(seen["score"])))
 
 
 def _step(schur: np.ndarray, score: np.ndarray, damping: float) -> np.ndarray:

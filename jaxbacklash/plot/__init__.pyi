@@ -26,9 +26,9 @@ from .oscillations import envelopes as envelopes
 from .oscillations import instantaneous_frequency as instantaneous_frequency
 from .oscillations import ridge as ridge
 from .responses import frequency_response as frequency_response
+from .signatures import expected_precision as expected_precision
 from .signatures import exponent_over_drive as exponent_over_drive
 from .signatures import pattern_region as pattern_region
 from .signatures import play_likelihood as play_likelihood
-from .signatures import worth as worth
 from .skeletons import backbone as backbone
 from .skeletons import skeleton as skeleton

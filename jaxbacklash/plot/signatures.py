@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from ..signature import ExponentMap, PatternMatch, PlayFromChaos, Worth
+from ..signature import ExpectedPrecision, ExponentMap, PatternMatch, PlayFromChaos
 from .drawing import Where, empty, ink, legend_above, panels, picture, readable_log
 from .style import GAP, HELDOUT, MEASURED, MEDIUM, MODEL
 
@@ -184,7 +184,7 @@ def pattern_region(
 
 
 @picture
-def worth(results: dict[str, Worth] | Worth, *, ax: Where = None) -> list[Axes]:
+def expected_precision(results: dict[str, ExpectedPrecision] | ExpectedPrecision, *, ax: Where = None) -> list[Axes]:
     """Half width of the play's interval over the true play, for several sets of drive levels; nothing found lies at the top.
 
     Parameters
@@ -200,17 +200,17 @@ def worth(results: dict[str, Worth] | Worth, *, ax: Where = None) -> list[Axes]:
     --------
     >>> joint = jb.two_link(3.16, np.radians(1.5), 15000.0, 9.0, -60.0, linearised=True)
     >>> curve = jb.signature.exponent_map(joint, 1.54, (0.6, 5.0, 60), starts=2, periods=60, skip=30)
-    >>> found = jb.signature.worth(curve, [0.03, 0.05], (0.02, 0.03), experiments=5)
-    >>> jb.plot.worth(found).get_xlabel()
+    >>> found = jb.signature.expected_precision(curve, [0.03, 0.05], (0.02, 0.03), experiments=5)
+    >>> jb.plot.expected_precision(found).get_xlabel()
     'true total play [deg]'
     """
     sets = results if isinstance(results, dict) else {"": results}
     axes = panels(ax, 1, len(sets), height=MEDIUM, sharey=True)
     for ax, (name, one) in zip(axes, sets.items()):
-        some, held = one.determined, one.held
+        some, covered = one.determined, one.covered
         plays = np.degrees(one.play)
         for chosen, colour, mark, words in (
-            (some & held, MEASURED, "o", "interval holds the truth"), (some & ~held, MODEL, "x", "misses it"),
+            (some & covered, MEASURED, "o", "interval holds the truth"), (some & ~covered, MODEL, "x", "misses it"),
         ):  # fmt: skip
             ax.plot(plays[chosen], 100.0 * one.half_width[chosen], mark, color=colour, ms=3.5, mew=0.8, label=words)
         ax.plot(plays[~some], np.full(int((~some).sum()), 90.0), "v", color=GAP, ms=4, label="no play determined")

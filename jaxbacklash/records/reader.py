@@ -26,7 +26,7 @@ from .files import read_table
 from .finding import ASK, REFUSE, Finding
 from .findings import find, find_in_times
 from .findings.channel import Channel
-from .findings.held import refreshed_every
+from .findings.held_values import refreshed_every
 from .findings.mend import after, before
 from .options import ReadOptions
 from .record import Record

@@ -9,7 +9,7 @@ import numpy as np
 from ..dynamics import Basins, Exponents
 from ..plot.style import format_interval, format_value, short
 from ..second_opinion import CrossCheck
-from ..signature import ExponentMap, PatternMatch, PlayFromChaos, Worth
+from ..signature import ExpectedPrecision, ExponentMap, PatternMatch, PlayFromChaos
 from ..simulation import Trajectory
 from ..skeletons import Response, Skeleton, Skeletons
 from ..skeletons.result import LABELS, METHODS, Value, verdict
@@ -122,9 +122,9 @@ def of_play(found: PlayFromChaos) -> Card:
 
 
 @card_of.register
-def of_worth(found: Worth) -> Card:
+def of_expected_precision(found: ExpectedPrecision) -> Card:
     """What a set of drive levels would tell of the play."""
-    return Card("What these drive levels are worth", (f"{found}.",), (), (Picture("worth", (found,)),))
+    return Card("What these drive levels are worth", (f"{found}.",), (), (Picture("expected_precision", (found,)),))
 
 
 @card_of.register

@@ -124,7 +124,7 @@ def explain_torque(latent: Latent, sets: tuple[tuple[str, ...], ...] = SETS) -> 
         log_precisions -= 2.0 * np.log(10.0) * 0.5
     prepared = prepare(smoother, point, inside.linear, jnp.asarray(log_precisions))
 
-    def attempt(names: tuple[str, ...]) -> _Tried:
+    def attempt(names: tuple[str, ...]) -> _Attempt:
         knots = tuple(choose_knots(latent, name, len(names)) for name in names)
         phi = basis_at_nodes(latent, motions, names, knots)
         penalty = np.eye(WIDTH)
@@ -142,7 +142,7 @@ def explain_torque(latent: Latent, sets: tuple[tuple[str, ...], ...] = SETS) -> 
         # A remainder that wanders cannot tell its own level from the table's: the torque's level decides.
         table = table + float(np.average(torque - at_nodes @ table, weights=weights(latent, torque)))
         spread = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        return _Tried(names, knots, float(found.evidence), left, at_nodes, table, spread, theta)
+        return _Attempt(names, knots, float(found.evidence), left, at_nodes, table, spread, theta)
 
     first, *others = [n for n in sets if varies(latent, n)] or [("t",)]
     tried = [attempt(first)]  # alone, so that one thread compiles what all of them run
@@ -161,7 +161,7 @@ def explain_torque(latent: Latent, sets: tuple[tuple[str, ...], ...] = SETS) -> 
 
 
 @dataclass(frozen=True)
-class _Tried:
+class _Attempt:
     """One set's table; ``left`` mean square that it does not predict out of sample, over the weight of the values."""
 
     names: tuple[str, ...]
@@ -178,7 +178,7 @@ class _Tried:
         return max(0.0, 1.0 - self.left[0] / self.left[1])
 
 
-def _choose(tried: list[_Tried]) -> _Tried:
+def _choose(tried: list[_Attempt]) -> _Attempt:
     """The likeliest single coordinate, unless two are likelier and leave clearly less."""
     singles = [entry for entry in tried if len(entry.names) == 1]
     pairs = [entry for entry in tried if len(entry.names) == 2]

@@ -117,7 +117,7 @@ class BlockLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
     ) -> Any:
         undamped = solve(state.blocks, jnp.asarray(0.0), args.windows.used, _room(args, y.theta))
         stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps}
-        told = {"schur": undamped.schur, "pull": undamped.score, "promise": undamped.promise}
+        told = {"schur": undamped.schur, "score": undamped.score, "promise": undamped.promise}
         return y, aux, stats | told | {"log_determinant": undamped.log_determinant}
 
 

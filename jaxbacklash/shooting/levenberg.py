@@ -35,7 +35,7 @@ class Levenberg(eqx.Module):
 
 class Minimum(eqx.Module):
     """Where a search ended: ``value``, and ``stats``: the ``cost``, what was ``predicted``, the ``steps`` taken, and undamped the
-    ``schur`` information, the ``pull`` and the ``promise``, by how much the next step would lower the cost."""
+    ``schur`` information, the ``score`` and the ``promise``, by how much the next step would lower the cost."""
 
     value: Unknowns
     stats: dict[str, Any]

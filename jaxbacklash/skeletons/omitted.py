@@ -81,7 +81,7 @@ def omitted(
 
 
 @dataclass(frozen=True)
-class _Step:
+class _Refined:
     """One step with one torque more: ``left`` sum of squares, ``step`` of the values and, last, the ``strength``."""
 
     left: float
@@ -93,12 +93,12 @@ class _Step:
         return float(self.step[-1])
 
 
-def _with(terms: Terms, keep: np.ndarray, found: Inversion, inertia: float | None, shape: np.ndarray) -> _Step:
+def _with(terms: Terms, keep: np.ndarray, found: Inversion, inertia: float | None, shape: np.ndarray) -> _Refined:
     jacobian, residual, real = linearised(terms, keep, found, inertia)
     columns = np.concatenate([jacobian, -real(shape)[:, None]], axis=1)
     covariance, step = jackknife(columns, residual, found.blocks)
     left = residual - columns @ step
-    return _Step(float(left @ left), step, float(np.sqrt(covariance[-1, -1])))
+    return _Refined(float(left @ left), step, float(np.sqrt(covariance[-1, -1])))
 
 
 WORDS = {

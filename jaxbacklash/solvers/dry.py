@@ -61,7 +61,7 @@ class Mode(NamedTuple):
         moving = now.free - now.joint * self.slip_z - now.ground * self.slip_y
         return jnp.where(self.held_z, now.base, jnp.where(self.held_y, 0.0, moving))
 
-    def held(self, now: Moment) -> tuple[Scalar, Scalar]:
+    def holding(self, now: Moment) -> tuple[Scalar, Scalar]:
         """What friction has to hold where the link sticks, and the most that it can [rad/s^2]."""
         at_joint, at_ground = now.free - now.base - now.ground * self.slip_y, now.free - now.joint * self.slip_z
         return jnp.where(self.held_z, at_joint, at_ground), jnp.where(self.held_z, now.joint, now.ground)
@@ -189,8 +189,8 @@ def _put_right(
     y, dy = state[0], state[1]
     start, end = moments
     acceleration = mode.acceleration(end)
-    held, most = mode.held(end)
-    held0, most0 = mode.held(start)
+    held, most = mode.holding(end)
+    held0, most0 = mode.holding(start)
     # A link that sticks breaks away where its hold runs out, on a straight line from start to end.
     lack, spare = jnp.abs(held) - most, most0 - jnp.abs(held0)
     broke = (mode.held_z | mode.held_y) & (lack > 0.0)

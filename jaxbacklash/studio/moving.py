@@ -73,7 +73,7 @@ def moved(model: Model, changes: Mapping[str, float], between: tuple[float, floa
     return jb.compare(system, record, translational=fit.translational, known=fit.known_noise)
 
 
-def stretch(model: Model) -> tuple[float, float]:
+def shown_part(model: Model) -> tuple[float, float]:
     """The stretch of the record that is shown: around the window that the model misses most [s]."""
     score, t = model.fit.score, model.fit.records[0].t
     worst = float(score.window_times[int(np.nanargmax(score.window_rms))])

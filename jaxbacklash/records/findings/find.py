@@ -10,7 +10,7 @@ import numpy as np
 from jaxbacklash.records.finding import WARN, Finding
 from jaxbacklash.records.options import ReadOptions
 
-from . import answers, held, jumps, limits, mend, quantities, relations, spikes, stamps
+from . import answers, held_values, jumps, limits, mend, quantities, relations, spikes, stamps
 from .channel import Channel, by_name
 from .rules import silenced
 
@@ -56,7 +56,7 @@ def find(
     found: list[Finding] = []
     # What one check finds would set off the next: a code stands out, a wrap shifts, and neither follows anything. So a channel is
     # looked at further once it is mended, and the whole record once no channel waits for an answer.
-    for check in (jumps.known_wraps, spikes.codes, jumps.wraps, held.held, spikes.spikes):
+    for check in (jumps.known_wraps, spikes.codes, jumps.wraps, held_values.held_values, spikes.spikes):
         new = _open(check(_others(looked_at, found)), options, units_stated)
         looked_at = _mended(t, looked_at, new) if new else looked_at
         found += new
@@ -69,7 +69,7 @@ def find(
             new = _open(relations.before_sizes(channels, extras), options, units_stated) or new
     found += new
     for whole in (
-        lambda: limits.clipped(looked_at) or held.held_rows(looked_at) or jumps.shifts(t, looked_at),
+        lambda: limits.clipped(looked_at) or held_values.held_rows(looked_at) or jumps.shifts(t, looked_at),
         lambda: relations.relations(channels, extras),
         lambda: answers.answers(t, looked_at),
     ):

@@ -9,7 +9,7 @@ import numpy as np
 from jaxbacklash.records.finding import Finding
 from jaxbacklash.records.options import ReadOptions
 
-from . import held, jumps, spikes
+from . import held_values, jumps, spikes
 from .channel import Channel
 from .local import bridge
 
@@ -49,15 +49,15 @@ def unshift(values: np.ndarray) -> np.ndarray:
 
 
 def despiked(values: np.ndarray) -> np.ndarray:
-    """A channel (N,) whose samples that were never measured (`spikes.bad_rows`, `held.stale_rows`) are bridged by the others."""
+    """A channel (N,) whose samples that were never measured (`bad_rows`, `stale_rows`) are bridged by the others."""
     channel = Channel(values)
-    rows = np.union1d(spikes.bad_rows(channel), held.stale_rows(channel))
+    rows = np.union1d(spikes.bad_rows(channel), held_values.stale_rows(channel))
     return bridge(values, rows) if rows.size else values
 
 
 def fresh(values: np.ndarray) -> slice:
     """The rows at which a channel (N,) that is refreshed every k-th row has a new value; all rows where k is 1."""
-    every = held.refreshed_every(Channel(values))
+    every = held_values.refreshed_every(Channel(values))
     if every == 1:
         return slice(None)
     changes = np.flatnonzero(np.diff(values)) + 1
@@ -109,7 +109,7 @@ def before(
             values = -values
         if name == "x" and options.ratio is not None:
             values = values / options.ratio
-        if name in options.despike and held.refreshed_every(Channel(values)) == 1:
+        if name in options.despike and held_values.refreshed_every(Channel(values)) == 1:
             values = despiked(values)
         if name in options.unwrap:
             jumped = jumps.turn_of(Channel(values))

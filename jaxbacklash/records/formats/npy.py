@@ -10,7 +10,7 @@ from ..checks import wrong
 from ..table import Table
 from .arrays import Columns
 from .guard import bounded, guarded
-from .npz import claim
+from .npz import declared_size
 
 WANTED = "a .npy file of plain numbers as numpy.save writes it"
 
@@ -18,7 +18,7 @@ WANTED = "a .npy file of plain numbers as numpy.save writes it"
 def read(path: Path) -> Table:
     """The columns of a .npy file; those of a matrix are called "column 1" and so on. Raises `BadInput`."""
     with guarded(path, "a file that is damaged or no NumPy array", WANTED), open(path, "rb") as file:
-        claimed = claim(file)
+        claimed = declared_size(file)
         if claimed is None:
             raise wrong(str(path), "pickled objects, which are never read", WANTED)
         bounded(claimed, str(path), "an array")

@@ -66,7 +66,7 @@ def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo, where: str) -> np.n
     """One array, or what is there instead of one that can be read."""
     try:
         with archive.open(info) as file:
-            claimed = claim(file)
+            claimed = declared_size(file)
         if claimed is None:
             return "pickled objects, which are never read"
         if claimed <= info.file_size:
@@ -84,7 +84,7 @@ def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo, where: str) -> np.n
     raise wrong(where, found, "a complete file; copy it again")
 
 
-def claim(file: IO[bytes]) -> int | None:
+def declared_size(file: IO[bytes]) -> int | None:
     """Bytes of the array whose .npy header comes next in ``file``, by what the header says; None for pickled objects."""
     version = np.lib.format.read_magic(file)
     read_header = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0

@@ -9,7 +9,7 @@ import panel as pn
 import panel_material_ui as pmui
 
 from ..figures import Figure, drawn
-from ..moving import moved, ranges, stretch
+from ..moving import moved, ranges, shown_part
 from ..worker import sentence
 from ..zoomable import zoomable
 from .part import WIDE, Desk, Part, button, escaped, row, text
@@ -98,7 +98,7 @@ class ValuesPart(Part):
                     self._at_work = False
                     return
             model, changes = wanted
-            part = stretch(model)
+            part = shown_part(model)
             try:
                 found = moved(model, changes, part)
                 figure = drawn("fit", found, between=part)

@@ -12,8 +12,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..errors import BadInput
-from ..records import Record
 from ..signals import choose_intervals, fit_spline, span
+from .record import Record
 
 CLEAR = 5.0
 """Standard errors by which a motion has to stand out of noise, or to go with its input."""

@@ -30,7 +30,7 @@ MOST = 0.2
 """Share of the samples up to which they are called stale; beyond it the channel is coarse or at rest."""
 
 
-def held(channels: Mapping[str, Channel]) -> list[Finding]:
+def held_values(channels: Mapping[str, Channel]) -> list[Finding]:
     """Channels that hold their value; of a force that is how amplifiers put it out."""
     channels = {name: channel for name, channel in channels.items() if name != "F"}
     found = []

@@ -12,8 +12,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from ..errors import BadInput
-from ..records import Record
 from ..signals import highest_frequency
+from .record import Record
 
 MOST_SAMPLES = 400_000
 """Samples of all records that are fitted together, at most: a fit to so many takes minutes on two cores, and gigabytes."""

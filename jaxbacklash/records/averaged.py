@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..records import Record
-from ..records.force import force_edges
 from ..signals import Bump
+from .force import force_edges
+from .record import Record
 
 
 class Averaged:

@@ -17,7 +17,7 @@ from .levels import Level
 
 
 @dataclass(frozen=True, eq=False)
-class Worth(Shown):
+class ExpectedPrecision(Shown):
     """What would come out, over many imagined experiments.
 
     ``play`` (T,) true plays [rad]; ``low``, ``high`` (T,) ends of the 95 % interval, NaN where no play was determined; ``value``
@@ -37,7 +37,7 @@ class Worth(Shown):
         return np.isfinite(self.value)
 
     @property
-    def held(self) -> np.ndarray:
+    def covered(self) -> np.ndarray:
         """(T,) whether the interval held the truth; no interval holds everything."""
         return ~self.determined | ((self.low <= self.play) & (self.play <= self.high))
 
@@ -52,7 +52,7 @@ class Worth(Shown):
         return (
             f"{self.play.size} imagined experiments: a play comes out of {100.0 * some.mean():.0f} %, "
             + (f"+- {100 * width[1]:.2g} % (80 % of them {100 * width[0]:.2g} to {100 * width[2]:.2g} %), " if some.any() else "")
-            + f"intervals hold the truth in {100.0 * self.held.mean():.1f} %, {self.bits.mean():.1f} bit each"
+            + f"intervals hold the truth in {100.0 * self.covered.mean():.1f} %, {self.bits.mean():.1f} bit each"
         )
 
     def to_dataframe(self) -> Any:
@@ -64,11 +64,11 @@ class Worth(Shown):
         return dataframe({name: getattr(self, name) for name in ("play", "value", "low", "high", "pieces", "bits")})
 
 
-def worth(
+def expected_precision(
     map_: ExponentMap, amplitudes: Sequence[float], plays: tuple[float, float], *, experiments: int = 200, stderr: float = 0.1,
     truth: ExponentMap | None = None, drive_error: float = DRIVE_ERROR, false_alarm: float = FALSE_ALARM, missed: float = MISSED,
     systematic: float = SYSTEMATIC, seed: int = 0,
-) -> Worth:  # fmt: skip
+) -> ExpectedPrecision:  # fmt: skip
     """Imagine experiments on joints whose play is drawn from a range, and infer each play back.
 
     Parameters
@@ -84,13 +84,13 @@ def worth(
 
     Returns
     -------
-    `Worth`: prints itself
+    `ExpectedPrecision`: prints itself
 
     Examples
     --------
     >>> joint = jb.two_link(3.16, np.radians(1.5), 15000.0, 9.0, -60.0, linearised=True)
     >>> curve = jb.signature.exponent_map(joint, 1.54, (0.6, 5.0, 60), starts=2, periods=60, skip=30)
-    >>> print(jb.signature.worth(curve, [0.03, 0.05], (0.02, 0.03), experiments=5))
+    >>> print(jb.signature.expected_precision(curve, [0.03, 0.05], (0.02, 0.03), experiments=5))
     5 imagined experiments: ...
     """
     truth = map_ if truth is None else truth
@@ -105,7 +105,7 @@ def worth(
         found = play_from_exponents(map_, levels, plays=plays, **options)
         low, high = found.interval or (np.nan, np.nan)
         rows.append((np.nan if found.value is None else found.value, low, high, len(found.pieces), found.bits))
-    return Worth(true, *np.array(rows).T)
+    return ExpectedPrecision(true, *np.array(rows).T)
 
 
 def imagine(
