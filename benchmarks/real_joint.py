@@ -22,9 +22,9 @@ from pathlib import Path
 import numpy as np
 
 import jaxbacklash as jb
-from jaxbacklash.fitting.loop import read_plateau, sliding_level
 from jaxbacklash.fitting.score import Score
 from jaxbacklash.records import oriented, parse_columns, parse_units, read_record
+from jaxbacklash.regression.force_loop import read_plateau, sliding_level
 from tests.independent.held_link import HeldLink, measured
 
 COLUMNS, UNITS = parse_columns("t=t_s,x=x_in,T=F_kip"), parse_units("x=in,T=kip")

@@ -14,9 +14,9 @@ import numpy as np
 from .effects import Contact
 from .errors import BadInput, NoAnswer
 from .fitting import Fit
-from .fitting.loop import read_plateau
 from .frames import dataframe
 from .pointwise import along
+from .regression.force_loop import read_plateau
 from .showing import Shown
 from .signals import choose_intervals, fit_spline, span
 from .skeletons import Skeleton, Skeletons, skeleton

@@ -11,10 +11,10 @@ import jaxbacklash as jb
 from jaxbacklash.criticism.model_builder import ModelBuilder
 from jaxbacklash.effects import CoulombGround
 from jaxbacklash.fitting.estimates import judge
-from jaxbacklash.fitting.loop import read_loop, read_plateau, stop
 from jaxbacklash.fitting.score import score
 from jaxbacklash.fitting.setup import base_system, first_guess
 from jaxbacklash.records import oriented, parse_columns, parse_units, read_record
+from jaxbacklash.regression.force_loop import read_loop, read_plateau, stop
 from jaxbacklash.signals import noise_of_differences
 from tests.independent.held_link import HeldLink, measured, modulated_sine
 

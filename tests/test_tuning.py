@@ -5,14 +5,14 @@ import pytest
 
 pytest.importorskip("numba")
 
-from jaxbacklash.criticism import tuning
-from jaxbacklash.criticism.tuning import tune
-from jaxbacklash.criticism.weak_form import WeakForm
 from jaxbacklash.effects import BoucWen, Dahl, Lugre
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.mechanics import Instant
 from jaxbacklash.parameters import values
 from jaxbacklash.records import Record
+from jaxbacklash.regression import tuning
+from jaxbacklash.regression.tuning import tune
+from jaxbacklash.regression.weak_form import WeakForm
 from tests.independent.generator import make_excitation, measure, simulate_truth
 from tests.independent.rigs import Rig
 

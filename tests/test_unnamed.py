@@ -10,8 +10,8 @@ import jaxbacklash as jb
 from jaxbacklash.criticism.evidence import SURE, demanded, leaves_noise
 from jaxbacklash.criticism.unnamed import Unnamed, best_fall, glimpses, rhythm, unnamed
 from jaxbacklash.criticism.verdict import judge_rest
-from jaxbacklash.criticism.weak_form import WeakForm
 from jaxbacklash.records import Record
+from jaxbacklash.regression.weak_form import WeakForm
 from jaxbacklash.signals import Bump
 
 from .hidden import NOISE, fitter, hidden, noisier

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import jaxbacklash as jb
-from jaxbacklash.criticism import weak_form
-from jaxbacklash.criticism.weak_form import WeakForm
 from jaxbacklash.fitting.setup import base_system
+from jaxbacklash.regression import weak_form
+from jaxbacklash.regression.weak_form import WeakForm
 from tests.hidden import hidden
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from jaxbacklash.fitting.equation_error import _WeakForm, estimate
 from jaxbacklash.mechanics import catalogue
+from jaxbacklash.regression.equation_error import _WeakForm, estimate
 
 from .hidden import hidden
 

@@ -9,13 +9,13 @@ import numpy as np
 
 from ..errors import BadInput
 from ..fitting.chance import beyond_chance, misses
-from ..fitting.equation_error import Start
 from ..fitting.estimates import judge
 from ..fitting.fit import ABSOLUTE
 from ..fitting.result import Fit
 from ..fitting.search import inverse_information, silent
 from ..parameters import values, with_values
 from ..records import Record
+from ..regression.equation_error import Start
 from ..system import System
 from .bench import Bench, Point
 from .cause import Cause

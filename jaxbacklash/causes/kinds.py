@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..fitting.equation_error import estimate
 from ..records import Record
+from ..regression.equation_error import estimate
 from .resampled import read_at
 
 

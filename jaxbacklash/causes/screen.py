@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..errors import BadInput, NoAnswer
-from ..fitting.equation_error import Start, estimate
 from ..mechanics import AbstractEffect
 from ..records import Record
+from ..regression.equation_error import Start, estimate
 
 MOST = 2500
 """Samples of a record that the weak form is asked on, for speed."""

@@ -12,8 +12,8 @@ import numpy as np
 
 from ..fitting.continuation import SHARP, tied
 from ..mechanics import AbstractEffect
+from ..regression.along_motion import motion, own_torques
 from ..shooting.problem import Unknowns
-from .along_motion import motion, own_torques
 from .fitted_model import FittedModel
 from .model_fitter import ModelFitter
 from .perturbed import answered, model_record, panel_edges, parabola

@@ -23,14 +23,14 @@ from ..fitting.setup import free_names, held_system, make_problem
 from ..mechanics import AbstractEffect, catalogue
 from ..parameters import specs
 from ..records import Record
+from ..regression.along_motion import own_states
+from ..regression.weak_form import WeakForm
 from ..shooting.levenberg import Levenberg, minimise
 from ..shooting.problem import Problem, Unknowns
 from ..shooting.windows import Layout, Windows
 from ..system import System
-from .along_motion import own_states
 from .fitted_model import FittedModel
 from .laws_for import laws_for
-from .weak_form import WeakForm
 
 COLUMNS = 10
 """Free parameters in steps of this many, so that adding one compiles nothing."""

@@ -13,7 +13,6 @@ import numpy as np
 from ..errors import BadInput
 from ..fitting.chance import explains
 from ..fitting.counts import few_counts
-from ..fitting.equation_error import Start
 from ..fitting.estimates import inflation, judge
 from ..fitting.fit import ABSOLUTE, prepare
 from ..fitting.left_over import predict, why_open
@@ -27,6 +26,7 @@ from ..records import Record, oriented
 from ..records.force import tell_way
 from ..records.relative_motion import check_answers
 from ..records.size import check_size
+from ..regression.equation_error import Start
 from ..shooting.problem import Problem, Unknowns
 from ..system import System
 from .evidence_search import EvidenceSearch

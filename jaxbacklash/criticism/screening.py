@@ -20,13 +20,13 @@ import numpy as np
 
 from ..mechanics import canonical_name
 from ..parameters import free_specs, values
+from ..regression.tuning import tune
 from ..system import System
 from .candidates import Candidate, score_test, share_of_rest
 from .fitted_model import FittedModel
 from .force_test import ForceTest
 from .model_fitter import ModelFitter
 from .moves import give_way
-from .tuning import tune
 
 SEEN = 10.0
 """Fall of the weak form's sum of squares, in units of its rows' variance, from which on a law that remembers is tuned."""

@@ -14,14 +14,14 @@ import equinox as eqx
 import numpy as np
 
 from ..pointwise import along
+from ..regression.along_motion import Motion
+from ..regression.weak_form import WeakForm, whitener
 from ..shooting.levenberg import Levenberg, minimise
 from ..system import System
-from .along_motion import Motion
 from .evidence import SURE, demanded, most_of_noise
 from .fitted_model import FittedModel
 from .model_builder import ModelBuilder
 from .perturbed import answered, as_it_ended, blurred, delayed, model_record, panel_edges, parabola
-from .weak_form import WeakForm, whitener
 
 LOOKED = 3
 """Torques, the likeliest by the weak form, that are held against the trajectory."""

@@ -18,11 +18,11 @@ from ..records import Record, oriented
 from ..records.force import tell_way
 from ..records.relative_motion import check_answers
 from ..records.size import check_size
+from ..regression.equation_error import Start
 from ..shooting.lengths import PANELS, longest_panel, score_window, shooting_window
 from ..shooting.windows import Layout, Windows, crossing_time, cut
 from ..system import System
 from .chance import explains
-from .equation_error import Start
 from .estimates import UNDETERMINED, Estimate, inflation, judge
 from .hard import SHORTEST, SUSPECT, contact_samples, harder, most_play, travel_in_contact
 from .left_over import EXPLAINED, predict, settle_noise, why_open

@@ -11,13 +11,13 @@ import numpy as np
 from ..frames import dataframe, known
 from ..parameters import channel_unit
 from ..records import Record
+from ..regression.equation_error import Start
 from ..shooting.lengths import SCORE_WINDOW
 from ..shooting.problem import Problem, Unknowns
 from ..showing import Shown
 from ..system import System
 from .chance import beyond_chance, explains, near_noise
 from .counts import few_counts
-from .equation_error import Start
 from .estimates import Estimate, line
 from .score import Score, error_in_words
 

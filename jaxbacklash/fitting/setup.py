@@ -15,11 +15,11 @@ from ..errors import BadInput
 from ..mechanics import AbstractEffect, Drive, canonical_name, catalogue, motion_of
 from ..parameters import ravel, specs, values, with_values
 from ..records import Record
+from ..regression.equation_error import Start, estimate
+from ..regression.force_loop import read_loop
 from ..shooting.problem import Problem, Unknowns
 from ..shooting.windows import Windows
 from ..system import System, observe
-from .equation_error import Start, estimate
-from .loop import read_loop
 from .stick_slip import march, place, sticks_and_slips
 
 MODELS = ("joint", "linear", "free")

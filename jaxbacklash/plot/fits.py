@@ -8,9 +8,9 @@ import numpy as np
 
 from ..errors import BadInput
 from ..fitting import Comparison, Fit, Score
-from ..fitting.loop import NOTHING, sliding_level
 from ..parameters import channel_unit, unit_text
 from ..records import MeasuredSeries, Record
+from ..regression.force_loop import NOTHING, sliding_level
 from ..simulation import Trajectory
 from ..system import System
 from .drawing import Drawn, Where

@@ -9,12 +9,12 @@ import numpy as np
 
 from .. import plot
 from ..fitting import Comparison, Fit, Score, error_in_words
-from ..fitting.loop import read_plateau
 from ..parameters import channel_unit
 from ..plot.drawing import svg_of
 from ..plot.fits import beside
 from ..plot.style import short
 from ..records import Record
+from ..regression.force_loop import read_plateau
 from .html import Panel, write_report
 
 

@@ -13,7 +13,7 @@ from ..criticism.refinement import Moved, alternatives_sentence, doubted, steps
 from ..effects import Contact
 from ..errors import BadInput, NoAnswer
 from ..fitting import Fit
-from ..fitting.equation_error import estimate
+from ..regression.equation_error import estimate
 from ..residuals import Findings
 from .result import as_json as fit_json
 from .result import cross_check, finite

@@ -9,10 +9,10 @@ import numpy as np
 
 from ..causes import Cause
 from ..fitting import Comparison, Estimate, Fit, Score
-from ..fitting.equation_error import Start
 from ..fitting.result import doubt, verdict_text
 from ..parameters import specs, unit_text, values
 from ..records import Record
+from ..regression.equation_error import Start
 from ..second_opinion import cross_check as skeletons_beside
 
 SCHEMA = 1

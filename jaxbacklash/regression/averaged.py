@@ -1,17 +1,17 @@
 r"""A record's equation of motion averaged under smooth bumps: what every regression on it, its weak form, begins with.
 
 Integration by parts moves the derivatives to the bump, so that no sample is differenced:
-:math:`\int \varphi\,\ddot y = \int \ddot\varphi\,y`. The start of a fit (`jaxbacklash.fitting.equation_error`) and the look at
-which laws are absent (`jaxbacklash.criticism.weak_form`) both regress on these rows.
+:math:`\int \varphi\,\ddot y = \int \ddot\varphi\,y`. The start of a fit (`jaxbacklash.regression.equation_error`) and the look at
+which laws are absent (`jaxbacklash.regression.weak_form`) both regress on these rows.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from ..records import Record
+from ..records.force import force_edges
 from ..signals import Bump
-from .force import force_edges
-from .record import Record
 
 
 class Averaged:

@@ -19,8 +19,8 @@ from scipy import optimize
 from ..mechanics import AbstractEffect, Instant
 from ..pointwise import exerted
 from ..records import Record
-from ..records.averaged import Averaged
 from ..signals import choose_intervals, fit_spline, span
+from .averaged import Averaged
 
 
 @dataclass(frozen=True)

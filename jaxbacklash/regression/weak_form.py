@@ -15,9 +15,9 @@ from scipy import linalg
 from ..mechanics import AbstractEffect, canonical_name
 from ..parameters import ravel, specs
 from ..records import Record
-from ..records.averaged import Averaged
 from ..system import System
 from .along_motion import motion, own_torques, torques
+from .averaged import Averaged
 
 ORDER = 8
 """Order of the autoregression that whitens the rows."""
