@@ -5,7 +5,7 @@ import pytest
 
 pytest.importorskip("numba")
 
-from jaxbacklash.criticism.experiment import RAMP, SECONDS, error, separate, within_reach
+from jaxbacklash.criticism.experiment import SECONDS, error, separate, within_reach
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.records import Record
 from tests.hidden import fitter
@@ -38,7 +38,7 @@ def test_what_it_promises_is_what_the_joint_shows():
     assert "let a sine" in str(found)
     best = found.best
     # Simulated by other means, with another ramp.
-    sine = SteppedSine(best.frequency, (best.amplitude,), hold=SECONDS + 1.0, ramp=RAMP)
+    sine = SteppedSine(best.frequency, (best.amplitude,), hold=SECONDS + 1.0, ramp=0.1 * SECONDS)
     shown = fitter_of(hidden, Excitation("sine", sine), SECONDS, seed=6)
     errors = [error(shown, own, model) for model in (kept, rival)]
     assert errors[0] == pytest.approx(1.0, abs=0.05)

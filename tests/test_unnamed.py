@@ -139,16 +139,6 @@ def test_the_best_fall_is_tried_and_not_believed(rise, fall):
     assert best_fall(rise) == pytest.approx(fall)
 
 
-@pytest.mark.parametrize(("bar", "looks"), [(100.0, 2), (5.0, 3)])
-def test_what_is_far_from_the_bar_is_not_looked_at_more_closely(bar, looks):
-    """The parabola's lowest point is at half of the torque, a fall of 2.5."""
-    asked = []
-    rise = lambda share: asked.append(share) or 10.0 * share**2 - 10.0 * share  # noqa: E731
-    fall = best_fall(rise, bar)
-    assert len(asked) == looks
-    assert fall == pytest.approx(2.5 if looks == 3 else 0.0)
-
-
 @pytest.mark.parametrize("names", [(), ("cubic_stiffness",)])
 def test_the_verdict_says_what_goes_with_the_rest(names):
     joint = jb.base_motion_joint(inertia=3.0, backlash=0.02, stiffness=1e4, damping=20.0)

@@ -24,10 +24,7 @@ from .fitted_model import FittedModel
 from .model_builder import ModelBuilder
 
 SECONDS = 4.0
-"""Length of the experiment."""
-RAMP = 0.4
-"""Time in which its sine grows [s]."""
-SEED = 0
+"""Length of the experiment [s], of which its sine grows over the first tenth."""
 PARTED = 40.0
 """Twice the logarithm of the likelihood ratio that the experiment must promise: four times what an effect is accepted for."""
 
@@ -137,11 +134,11 @@ def within_reach(record: Record) -> Iterator[tuple[float, float]]:
 
 def measured_twin(model: System, builder: ModelBuilder, amplitude: float, frequency: float) -> Record:
     """What the rig would record of this model under a sine that grows from rest, with the noise of the record at hand."""
-    record, rng = builder.record, np.random.default_rng(SEED)
+    record, rng = builder.record, np.random.default_rng(0)
     forced = record.kind == "force"
-    # The smoothed step from no drive to the full one lasts a tenth of the dwell.
-    drive = SteppedSine(np.array([0.0, amplitude]), np.full(2, frequency), 10.0 * RAMP, as_force=forced)
-    begin = 9.5 * RAMP
+    # The smoothed step from no drive to the full one lasts a tenth of the dwell, half of it before the dwell ends.
+    drive = SteppedSine(np.array([0.0, amplitude]), np.full(2, frequency), SECONDS, as_force=forced)
+    begin = 0.95 * SECONDS
     path = simulate(model, drive, duration=SECONDS, rate=record.rate_hz, t0=begin)
     lag = model.lag()
     # A channel that lags shows the motion under an equally late drive, which has gone on meanwhile.

@@ -32,8 +32,6 @@ from ..system import System
 from .fitted_model import FittedModel
 from .laws_for import laws_for
 
-COLUMNS = 10
-"""Free parameters in steps of this many, so that adding one compiles nothing."""
 SHOOTING = 0.025
 """Length of a shooting window [s], eight samples at least: the unknown torque acts where windows join, so they are short beside
 the time in which a missing torque changes."""
@@ -177,9 +175,9 @@ def strengths(effect: AbstractEffect) -> tuple[str, ...]:
     return tuple(n for n, s in specs(effect).items() if s.null is not None and not s.fixed)
 
 
-def width(columns: int) -> int:
-    """The number of columns compiled for this many free parameters."""
-    return -(-columns // COLUMNS) * COLUMNS
+def width(columns: int, step: int = 10) -> int:
+    """The number of columns compiled for so many free parameters: a multiple of ``step``, so that one more compiles nothing."""
+    return -(-columns // step) * step
 
 
 def _pad(problem: Problem) -> Problem:

@@ -18,9 +18,6 @@ from ..shooting.problem import Problem, Unknowns
 from .fitted_model import FittedModel
 from .model_builder import ModelBuilder
 
-BLUR = 0.3
-"""Size of a blur of the sensor that is tried, in units of the noise."""
-
 
 def panel_edges(builder: ModelBuilder) -> np.ndarray:
     """Times (W, P + 1) at which a force on the link is given [s]."""
@@ -33,11 +30,12 @@ def delayed(builder: ModelBuilder, model: FittedModel) -> bool:
     return any(builder.laws[n].lag is not AbstractEffect.lag for n in model.names)
 
 
-def blurred(builder: ModelBuilder, model: FittedModel) -> float:
+def blurred(builder: ModelBuilder, model: FittedModel, size: float = 0.3) -> float:
     r"""What a sensor that averages over a short time would take off the sum of squares beside a tied model, at most.
 
     An average over a time :math:`w` shows :math:`z + \ddot z w^2/24`, and so does a delay that ends between two samples and is
     read along a straight line, with :math:`f(1-f)\Delta t^2/2`. What explains no more than that speaks of the sensor alone.
+    Blurs of ``size`` and twice of it, in units of the noise, are tried: small, so that the misfit is a parabola of them.
     """
     problem, unknowns = as_it_ended(builder, model)
     measured = np.asarray(builder.windows.measured)
@@ -48,10 +46,10 @@ def blurred(builder: ModelBuilder, model: FittedModel) -> float:
     still, predicted = answer(np.zeros(measured.shape))
     moved = np.asarray(predicted.motion)
     bend = np.gradient(np.gradient(moved, axis=1), axis=1) * (np.asarray(builder.windows.weight) > 0.0)
-    size = float(np.sqrt(np.mean(bend**2)))
-    if not size > 0.0:
+    bent = float(np.sqrt(np.mean(bend**2)))
+    if not bent > 0.0:
         return 0.0
-    bend *= BLUR * builder.layout.noise[0] / size
+    bend *= size * builder.layout.noise[0] / bent
     slope, curvature = parabola(answer(-bend)[0] - still, answer(-2.0 * bend)[0] - still, 1.0)
     return slope**2 / curvature if np.isfinite(curvature) and curvature > 0.0 else 0.0
 

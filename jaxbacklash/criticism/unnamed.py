@@ -23,18 +23,10 @@ from .fitted_model import FittedModel
 from .model_builder import ModelBuilder
 from .perturbed import answered, as_it_ended, blurred, delayed, model_record, panel_edges, parabola
 
-LOOKED = 3
-"""Torques, the likeliest by the weak form, that are held against the trajectory."""
 BY_CHANCE = 8.0
 """What the weak form shows of a torque by chance where nothing is missing, at most: less is not held against the trajectory."""
-NOWHERE_NEAR = 0.3
-"""Share of what it would have to bring under which a torque is not looked at more closely."""
-FURTHEST = 3.0
-"""Size, as a multiple of what the weak form says, up to which a torque is applied."""
 ALIKE = 0.01
 """Share of a torque, squared, that the model cannot make up for by itself: with less it is no torque of its own."""
-SLOWEST, FINER, PASSED = 3, 4, 0.2
-"""Periods of a rhythm in a record at least, steps of frequency to a period more, and share of it that the bumps let pass."""
 
 
 @dataclass(frozen=True)
@@ -86,27 +78,27 @@ def unnamed(builder: ModelBuilder, model: FittedModel) -> Unnamed | None:
             return answered(eqx.tree_at(lambda p: p.windows.force, problem, applied + share * torque), unknowns)[0] - still
 
         bar = read + seen.chance + SURE * demanded(builder)
-        fall = best_fall(rise, bar * unit) / unit
+        fall = best_fall(rise) / unit
         if fall > bar:
             found.append(Unnamed(seen.words, fall))
     return max(found, key=lambda one: one.fall, default=None)
 
 
-def best_fall(rise: Callable[[float], float], bar: float = 0.0) -> float:
-    """The largest fall of a cost over sizes of a torque; ``rise`` tells how far the cost rises with one. What is far from falling
-    by ``bar`` is not looked at more closely."""
+def best_fall(rise: Callable[[float], float], furthest: float = 3.0) -> float:
+    """The largest fall of a cost over sizes of a torque; ``rise`` tells how far the cost rises with one.
+
+    Sizes are in units of what the weak form says; a parabola through sizes 1 and 2 is followed no further than ``furthest``, one
+    such step beyond.
+    """
     once, twice = rise(1.0), rise(2.0)
     slope, curvature = parabola(once, twice, 1.0)
     best = -slope / curvature if np.isfinite(curvature) and curvature > 0.0 else 0.0
-    seen = -min(once, twice)
-    if max(seen, -0.5 * slope * best) < NOWHERE_NEAR * bar:
-        return seen
     # What the parabola says of its own lowest point is not believed but tried: corners bend it.
-    return max(seen, -rise(float(np.clip(best, -FURTHEST, FURTHEST))))
+    return max(-min(once, twice), -rise(float(np.clip(best, -furthest, furthest))))
 
 
-def glimpses(builder: ModelBuilder, model: FittedModel, own: WeakForm) -> list[Glimpse]:
-    """The likeliest torques outside the catalogue beside a model, whose own motion looks like ``own``.
+def glimpses(builder: ModelBuilder, model: FittedModel, own: WeakForm, keep: int = 3) -> list[Glimpse]:
+    """The ``keep`` likeliest torques outside the catalogue beside a model, whose own motion looks like ``own``.
 
     What the model's parameters can do is taken off them, so that they bend its trajectory no more than they have to.
     """
@@ -130,7 +122,7 @@ def glimpses(builder: ModelBuilder, model: FittedModel, own: WeakForm) -> list[G
     told, tried = [*words, f"a rhythm of its own of {hertz:.3g} Hz"], [*(len(words) for _ in words), rest.size]
     found = [Glimpse(*one) for one in zip(told, rows, evidence, tried)]
     likely = [g for g in found if g.evidence > max(BY_CHANCE, g.chance)]
-    return sorted(likely, key=lambda g: -g.evidence)[:LOOKED]
+    return sorted(likely, key=lambda g: -g.evidence)[:keep]
 
 
 def products(system: System, m: Motion) -> dict[str, np.ndarray]:
@@ -164,12 +156,23 @@ def products(system: System, m: Motion) -> dict[str, np.ndarray]:
     }
 
 
-def rhythm(form: WeakForm, rest: np.ndarray, white: Callable[[np.ndarray], np.ndarray]) -> tuple[float, np.ndarray]:
-    """The sine that is likeliest in what is left: its frequency [Hz], and its torque (N,) at the likeliest phase."""
-    spectrum = np.abs(np.fft.rfft(rest, FINER * rest.size)) ** 2
-    hertz = np.fft.rfftfreq(FINER * rest.size, form.spacing)
-    slow = SLOWEST / (rest.size * form.spacing)
-    known = (hertz >= slow) & (form.passes(hertz) > PASSED)
+def rhythm(
+    form: WeakForm, rest: np.ndarray, white: Callable[[np.ndarray], np.ndarray], *, periods: int = 3, passed: float = 0.2
+) -> tuple[float, np.ndarray]:
+    """The sine that is likeliest in what is left: its frequency [Hz], and its torque (N,) at the likeliest phase.
+
+    Parameters
+    ----------
+    form : of the record
+    rest : (R,) what is left under the bumps, whitened
+    white : the filter that whitened it
+    periods : in the record at least; what is slower goes with a drift
+    passed : share of the sine that the bumps let pass at least; of what is faster they leave noise
+    """
+    # A sine between two frequencies of a spectrum padded to four times its length loses 1 - sinc(1/8)^2, 5 % of its power.
+    padded = 4 * rest.size
+    spectrum, hertz = np.abs(np.fft.rfft(rest, padded)) ** 2, np.fft.rfftfreq(padded, form.spacing)
+    known = (hertz >= periods / (rest.size * form.spacing)) & (form.passes(hertz) > passed)
     best = float(hertz[np.argmax(np.where(known, spectrum, -1.0))])
     angle = 2.0 * np.pi * best * (form.motion.t - form.motion.t[0])
     pair = np.stack([np.cos(angle), np.sin(angle)])

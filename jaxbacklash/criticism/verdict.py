@@ -5,15 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from ..fitting import Fit, error_in_words
+from ..fitting.chance import NEARLY
 from .evidence import at_a_limit, most_of_noise
 from .fitted_model import FittedModel
 from .unnamed import Unnamed
 
-LITTLE_MORE = 1.1
-"""A misfit below this looks like noise, so that a verdict against it says what noise would leave."""
-WORSE, NEARLY = 1.1, 1.05
-"""Growth of the error on a held-out record from which what was added does not hold there, unless the median window there ends so
-near the noise: then a few windows miss, which may begin where no start can be told."""
+AT_NOISE = 1.05
+"""Error of the median window of a held-out record, over the noise, up to which a larger error there speaks of a few windows,
+which may begin where no start can be told, and not against what was added."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +34,7 @@ def judge_rest(final: FittedModel, fits: list[Fit], beyond: Unnamed | None = Non
     first, last = fits[0], fits[-1]
     most = most_of_noise(final)
     strained = [name for name in sorted(final.names) if at_a_limit(final, name)]
-    here = final.misfit < most and last.score.median < LITTLE_MORE and not strained and beyond is None
+    here = final.misfit < most and last.score.median < NEARLY and not strained and beyond is None
     against = _elsewhere(first, last, here)
     if here:
         return Verdict(not against, _what_explains(final, first, last, against), here)
@@ -48,7 +47,7 @@ def judge_rest(final: FittedModel, fits: list[Fit], beyond: Unnamed | None = Non
         )
     else:
         text = f"Incomplete: the misfit is still {error_in_words(last.score)}{added}"
-        if most < final.misfit < LITTLE_MORE:
+        if most < final.misfit < NEARLY:
             text += f" ({final.misfit:.3f} over the whole record, of which noise explains {most:.3f} at most)"
         text += ", and no effect in the catalogue explains the rest."
         if strained:
@@ -59,7 +58,7 @@ def judge_rest(final: FittedModel, fits: list[Fit], beyond: Unnamed | None = Non
 def _what_explains(final: FittedModel, first: Fit, last: Fit, against: str) -> str:
     """What is said of a model that leaves but noise on the record, and what a held-out one has ``against`` it."""
     left = "what is left is noise"
-    if last.score.rms > LITTLE_MORE:
+    if last.score.rms > NEARLY:
         left += f" but in a few windows (the median window is off by {last.score.median:.2f} times the noise)"
     named, error = ", ".join(sorted(final.names)), error_in_words(last.score)
     if against:
@@ -75,7 +74,7 @@ def _what_explains(final: FittedModel, first: Fit, last: Fit, against: str) -> s
 def _few(last: Fit) -> str:
     """What is said where a held-out record ends at the noise but in a few windows."""
     held = last.heldout
-    if held is None or held.rms <= WORSE * max(LITTLE_MORE, last.score.rms):
+    if held is None or held.rms <= NEARLY * max(NEARLY, last.score.rms):
         return ""
     return (
         f" On the held-out record a few windows are missed (its error is {error_in_words(held)}, in the median window "
@@ -88,9 +87,9 @@ def _elsewhere(first: Fit, last: Fit, here: bool) -> str:
     before, after = first.heldout, last.heldout
     if before is None or after is None:
         return ""
-    if last is not first and after.rms > WORSE * before.rms and after.median > NEARLY:
+    if last is not first and after.rms > NEARLY * before.rms and after.median > AT_NOISE:
         rises = f"On the held-out record the error rises from {before.rms:.3g} to {error_in_words(after)}: "
         return rises + "what was added stands in for something else."
-    if here and after.median > LITTLE_MORE:
+    if here and after.median > NEARLY:
         return f"The held-out record is still missed, by {error_in_words(after)}: something else is at work there."
     return ""

@@ -20,6 +20,8 @@ SIGMAS = 4.0
 """Standard deviations by which the median window may exceed the noise: one right record in 30 000 does."""
 RARE = 1e-3
 """Chance with which noise alone takes a window beyond the limit that is counted."""
+NEARLY = 1.1
+"""Error over the noise up to which a fit counts as near the noise, which is itself an estimate."""
 SHARE, FEW = 0.05, 3
 """Windows beyond that limit, as a share and at least, that no chance explains; single ones are left to contacts that just graze
 an edge, where a right model parts from the record too."""
@@ -45,8 +47,8 @@ def missed(scores: Sequence[Score], system: Any) -> bool:
 
 
 def near_noise(scores: Sequence[Score]) -> bool:
-    """Whether the median window of every score is within a tenth of the noise, all its windows within three tenths."""
-    return all(s.median < 1.1 and s.rms < 1.3 for s in scores)
+    """Whether the median window of every score is near the noise, and all its windows together within three tenths of it."""
+    return all(s.median < NEARLY and s.rms < 1.3 for s in scores)
 
 
 def explains(scores: Sequence[Score], system: Any) -> bool:
@@ -64,8 +66,8 @@ def misses(score: Score, states: int) -> bool:
         return False
     freedom = max(score.t.size / max(np.asarray(score.window_rms).size, 1) - states, 1.0)
     own = ratio / (1.0 + NOISE_KNOWN)
-    # The median of K values that each have a standard deviation s has one of 1.25 s / sqrt(K).
-    spread = 1.25 / np.sqrt(2.0 * freedom * ratio.size)
+    # The median of K normal values of standard deviation s has one of sqrt(pi/2) s / sqrt(K), and s is 1 / sqrt(2 freedom).
+    spread = np.sqrt(0.5 * np.pi / (2.0 * freedom * ratio.size))
     limit = np.sqrt(chdtri(freedom, RARE) / freedom)
     beyond = int(np.sum(own > limit))
     return bool(np.median(own) > 1.0 + SIGMAS * spread or beyond > max(FEW, SHARE * ratio.size))

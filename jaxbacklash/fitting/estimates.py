@@ -11,6 +11,7 @@ from scipy.special import ndtri
 
 from ..parameters import specs, unit_text, values
 from ..records import Record
+from ..regression.force_loop import NOTHING
 from ..system import System
 from .hard import SHORTEST, contact_samples, most_play, reach_of_sampling
 
@@ -21,8 +22,6 @@ CLEAR = 5.0
 """Standard errors that a contact stiffness has to stand clear of zero."""
 ONE_WITH = 0.9995
 """Correlation of two errors from which on only a combination of the two parameters is determined: it prints as 1.000."""
-CARRIED = 0.1
-"""Share of the largest transmitted force that only contact can carry."""
 NORMAL_95 = float(ndtri(0.975))
 BELOW_95 = float(ndtri(0.95))
 BOUNDED = ("damping", "backlash")
@@ -118,7 +117,7 @@ def contacts(record: Record, low: float, high: float) -> Contacts:
     """Share of samples beyond each edge of the play, by the measured z (or y at a base at rest), or by a transmitted force."""
     moved = record.channels
     if record.kind == "transmitted":
-        level = CARRIED * float(np.max(np.abs(moved["T"])))
+        level = NOTHING * float(np.max(np.abs(moved["T"])))
         share = [float(np.mean(sign * moved["T"] > level)) for sign in (1.0, -1.0)]
         return Contacts(share[0], share[1], 0.5 * float(np.ptp(moved["x"])))
     z = moved["z"] if "z" in moved else moved["y"] - moved.get("x", 0.0)

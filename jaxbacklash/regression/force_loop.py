@@ -12,13 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import optimize
+from scipy.special import ndtri
 
 from ..records import Record
 
-MOST = 1500
-"""Samples that are looked at: a slow loop needs no more."""
 NOTHING = 0.1
-"""Share of the sliding force below which the joint counts as carrying nothing."""
+"""Share of the sliding force below which the joint counts as carrying nothing; what is more, only contact can carry."""
 
 
 @dataclass(frozen=True)
@@ -48,14 +47,15 @@ class Loop:
     plateau: Plateau
 
 
-def read_loop(record: Record) -> Loop:
+def read_loop(record: Record, most: int = 1500) -> Loop:
     """The loop of a record of transmitted force.
 
     Parameters
     ----------
     record : with base motion ``x`` and transmitted force ``T``, signed as in `jaxbacklash.records.orientation`
+    most : samples that are looked at, evenly spaced; a slow loop needs no more
     """
-    step = max(1, record.samples // MOST)
+    step = max(1, record.samples // most)
     x, force = (np.asarray(record.channels[name][::step], float) for name in ("x", "T"))
     reach = 0.5 * float(np.ptp(x))
     size = float(force @ force) + 1e-300
@@ -80,9 +80,9 @@ def read_loop(record: Record) -> Loop:
     polished = optimize.minimize(at, (width, half), method="Nelder-Mead", options=fine)
     width, half = (float(v) for v in polished.x)
     share, stiffness = solve(half, stop(x, width))
-    most = float(np.quantile(np.abs(force), 0.99))
-    stiffness = max(stiffness, 1e-3 * most / reach)
-    sliding = min(stiffness * (width - half), most)
+    largest = float(np.quantile(np.abs(force), 0.99))
+    stiffness = max(stiffness, 1e-3 * largest / reach)
+    sliding = min(stiffness * (width - half), largest)
     return Loop(2.0 * half, stiffness, sliding, share, read_plateau(record.channels["x"], record.channels["T"]))
 
 
@@ -116,8 +116,9 @@ def read_plateau(x: np.ndarray, force: np.ndarray) -> Plateau:
     widths = [w for w in widths if w > 0.25 * max(widths)]
     if not widths:
         return Plateau(None, None, 0)
-    spread = 1.4826 * float(np.median(np.abs(np.asarray(widths) - np.median(widths))))
-    return Plateau(float(np.median(widths)), 1.2533 * spread / float(np.sqrt(len(widths))), len(widths))
+    # Of normal values: the standard deviation from the median deviation, and from it that of their median.
+    spread = float(np.median(np.abs(np.asarray(widths) - np.median(widths)))) / float(ndtri(0.75))
+    return Plateau(float(np.median(widths)), float(np.sqrt(0.5 * np.pi / len(widths))) * spread, len(widths))
 
 
 def sliding_level(force: np.ndarray) -> float:

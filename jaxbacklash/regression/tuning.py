@@ -16,14 +16,7 @@ from ..mechanics import AbstractEffect
 from ..parameters import free_specs, ravel, specs, unravel, values, with_values
 from ..system import System
 from .along_motion import own_tangents
-from .weak_form import WeakForm, whitener
-
-ROUNDS, EVALUATIONS = 2, 8
-"""Times the joint is moved, and evaluations of the law between."""
-LOST = 1e30
-"""A torque of this size is that of a law that cannot be followed along the motion: its powers would overflow."""
-REACH = np.log(30.0)
-"""Logarithm of the factor by which a positive parameter may move in one round."""
+from .weak_form import RUNAWAY, WeakForm, whitener
 
 
 @dataclass(frozen=True)
@@ -37,7 +30,7 @@ class Tuned:
     count: int
 
 
-def tune(form: WeakForm, system: System, free: tuple[str, ...], variants: list[AbstractEffect]) -> Tuned:
+def tune(form: WeakForm, system: System, free: tuple[str, ...], variants: list[AbstractEffect], rounds: int = 2) -> Tuned:
     """The likeliest of some variants of a law, tuned beside a model.
 
     Parameters
@@ -45,10 +38,11 @@ def tune(form: WeakForm, system: System, free: tuple[str, ...], variants: list[A
     form : the record
     system, free : the model without the law, and the parameters in which it can still move
     variants : points to start from, each at any strength
+    rounds : how often the joint moves in answer to the law; the second takes up what the first has linearised
     """
     effect = sized(form, system, free, form.choose(system, free, variants)[0])
     left = np.zeros(0)
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         effect, system, left = _round(form, system, free, effect)
     return Tuned(effect, system, left, len(free_specs(effect)))
 
@@ -71,8 +65,14 @@ def stronger(effect: AbstractEffect, factor: float) -> AbstractEffect:
 
 
 def _round(
-    form: WeakForm, system: System, free: tuple[str, ...], effect: AbstractEffect
+    form: WeakForm, system: System, free: tuple[str, ...], effect: AbstractEffect, factor: float = 30.0, evaluations: int = 8
 ) -> tuple[AbstractEffect, System, np.ndarray]:
+    """Gauss-Newton within a trust region over the law's parameters, the joint's projected out, then a step of the joint's.
+
+    A positive parameter moves by no more than ``factor`` either way, one and a half decades. A round takes at most
+    ``evaluations`` of the law: it proposes a shape, which simulation refines, and need not converge.
+    """
+    reach = np.log(factor)
     left, by = form.missing(system, free)
     design = np.column_stack([by, form.column(effect, system)])
     white = whitener(left - design @ np.linalg.lstsq(design, left, rcond=None)[0])
@@ -91,8 +91,8 @@ def _round(
     begin = np.array([present[n] for n in described])
     begin = np.where(factors, np.maximum(begin, np.maximum(low, 1e-9)), begin)
     size = np.where(factors, begin, 1.0)
-    nearest = np.maximum(np.where(factors, low, 0.0) / size, np.exp(-REACH))
-    bounds = np.where(factors, np.log(nearest), low), np.where(factors, REACH, high)
+    nearest = np.maximum(np.where(factors, low, 0.0) / size, np.exp(-reach))
+    bounds = np.where(factors, np.log(nearest), low), np.where(factors, reach, high)
     first = np.where(factors, 0.0, np.clip(begin, bounds[0], bounds[1]))
     full = np.array(ravel(effect))
 
@@ -110,11 +110,11 @@ def _round(
             seeds = np.zeros((len(index), full.size))
             seeds[np.arange(len(index)), index] = chain
             # What cannot be followed explains nothing.
-            torque, columns = (np.where(np.abs(v) < LOST, v, 0.0) for v in own_tangents(law, system, seeds, form.motion))
+            torque, columns = (np.where(np.abs(v) < RUNAWAY, v, 0.0) for v in own_tangents(law, system, seeds, form.motion))
             seen[p.tobytes()] = project(form.average(torque)) - target, project(form.average(columns).T)
         return seen[p.tobytes()]
 
-    found = least_squares(lambda p: both(p)[0], first, jac=lambda p: both(p)[1], bounds=bounds, max_nfev=EVALUATIONS)
+    found = least_squares(lambda p: both(p)[0], first, jac=lambda p: both(p)[1], bounds=bounds, max_nfev=evaluations)
     effect = at(found.x)[0]
     rest = left - form.column(effect, system)
     change = np.linalg.lstsq(white(by), white(rest), rcond=None)[0]

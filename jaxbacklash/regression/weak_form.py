@@ -21,8 +21,9 @@ from .averaged import Averaged
 
 ORDER = 8
 """Order of the autoregression that whitens the rows."""
-RUNAWAY = 1e100
-"""A torque this large, whatever its unit, belongs to a motion that has run away."""
+RUNAWAY = 1e30
+"""A torque this large, whatever its unit, belongs to a motion that has run away, and explains nothing. Its fourth power, which a
+regression forms, stays within double precision."""
 
 
 class WeakForm(Averaged):
