@@ -228,8 +228,7 @@ def test_nothing_can_be_fitted_before_a_record_is_open(session):
         with pytest.raises(BadInput):
             act()
     session.open(Choice("broken.csv"))
-    assert session.bad
-    assert session.message.startswith("broken.csv")
+    assert session.record.wrong.startswith("broken.csv")
     with pytest.raises(BadInput):
         session.begin()
     with pytest.raises(BadInput):

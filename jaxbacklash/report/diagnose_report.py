@@ -48,7 +48,8 @@ def failure_panels(found: Findings) -> list[Panel]:
     return [
         Panel(
             "Where the model fails",
-            "Up to three of the coordinates that tell most; a misfit of 1 would be noise alone.",
+            "Up to three of the coordinates that tell most; a misfit of 1 would be noise alone. Numbers over bars are shares "
+            "of the missing torque's mean square.",
             svg_of(plot.where_it_fails, found),
             "fails",
             "Above, the residual of the windowed prediction over the noise (1 would be noise alone), with each place's share of "

@@ -40,7 +40,8 @@ SAYS = {
     "restoring_force": ("Restoring force", "What the joint returns over its relative motion, measured and as the model has it."),
     "force_loop": ("Force loop", "Transmitted force over the base motion, measured and predicted."),
     "where_it_fails": (
-        "Where it fails", "Misfit and missing torque over the coordinates that tell most, the place in the play first.",
+        "Where it fails", "Misfit and missing torque over the coordinates that tell most, the place in the play first; "
+        "numbers over bars are shares of the missing torque's mean square.",
     ),
     "missing_torque": ("The missing torque in time", "What would have to be added to the model for it to follow the record."),
     "torque_over": ("What the missing torque depends on", "Over the one or two coordinates that explain it best."),

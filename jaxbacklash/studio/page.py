@@ -23,8 +23,14 @@ from .session import Session
 PARTS = (RecordPart, ModelPart, FailurePart, MissingPart, ValuesPart, ComparePart, KeepPart)
 EVERY = 200
 """Milliseconds between two looks at whether there is something new."""
-NAMELESS = ".MuiLinearProgress-root { display: none; }"
+NAMELESS = {"& .MuiLinearProgress-root": {"display": "none"}}
 """The toolkit's own sign of work has no name for a screen reader; `StatusPart` tells what is computed."""
+TABS = {
+    "& .MuiTabs-list, & .MuiTabs-flexContainer": {"flexWrap": "wrap"}, "& .MuiTabs-indicator": {"display": "none"},
+    "& .MuiTab-root": {"borderBottom": "2px solid transparent"},
+    "& .MuiTab-root.Mui-selected": {"borderBottomColor": "currentColor"},
+}  # fmt: skip
+"""Names of parts go on in a second line where the window is narrow; the toolkit would let them run out of it."""
 SIDE = {"flex": "1 1 260px", "min-width": "0", "max-width": "100%"}
 MAIN = {"flex": "4 1 620px", "min-width": "0", "max-width": "100%"}
 
@@ -33,7 +39,7 @@ def page(session: Session, gallery: Gallery, aside: ThreadPoolExecutor) -> Any:
     """The page of one tab: another tab, or the same one loaded anew, shows the same session."""
     desk = Desk(session, gallery, aside)
     status, parts = StatusPart(desk), [kind(desk) for kind in PARTS]
-    tabs = pmui.Tabs(*((part.title, part.content) for part in parts), dynamic=True, **WIDE)
+    tabs = pmui.Tabs(*((part.title, part.content) for part in parts), dynamic=True, sx=TABS, **WIDE)
     seen: dict[str, Any] = {}
 
     def look() -> None:
@@ -50,4 +56,4 @@ def page(session: Session, gallery: Gallery, aside: ThreadPoolExecutor) -> Any:
     side = pn.Column(status.content, styles=SIDE)
     main = pn.Column(tabs, styles=MAIN)
     both = pn.FlexBox(side, main, **WIDE)
-    return pmui.Page(title="jaxbacklash studio", main=[both], stylesheets=[NAMELESS])
+    return pmui.Page(title="jaxbacklash studio", main=[both], sx=NAMELESS)

@@ -77,6 +77,7 @@ class Server:
         """Serve until the process ends or `stop` is called."""
         for name in ("tornado.access", "tornado.general", "bokeh.server.views.ws"):
             logging.getLogger(name).setLevel(logging.ERROR)  # what is refused, and tabs that are closed, concern nobody
+        self.loop.asyncio_loop.set_exception_handler(_unless_closed)  # type: ignore[attr-defined]
         self._gallery.warm()
         self._server.start()
         self.loop.start()
@@ -87,6 +88,14 @@ class Server:
     def stop(self) -> None:
         """End `run`, from any thread."""
         self.loop.add_callback(self.loop.stop)
+
+
+def _unless_closed(loop: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+    """Tell of an error, but not that a tab was closed while something was on its way to it."""
+    from tornado.websocket import WebSocketClosedError
+
+    if not isinstance(context.get("exception"), WebSocketClosedError):
+        loop.default_exception_handler(context)
 
 
 def open_browser(url: str) -> None:

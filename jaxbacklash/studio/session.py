@@ -61,7 +61,7 @@ class Session:
         with self._lock:
             self._halt()
             self.record, self.tree, self.refinement = found, Tree(), None
-            self._say(found.wrong, bad=bool(found.wrong))
+            self._say("")  # what is wrong with it stands beside the file
         return found
 
     def open_heldout(self, choice: Choice | None) -> Opened | None:
@@ -70,8 +70,7 @@ class Session:
         with self._lock:
             self._halt()
             self.heldout, self.tree, self.refinement = found, Tree(), None
-            wrong = "" if found is None else found.wrong
-            self._say(wrong, bad=bool(wrong))
+            self._say("")
         return found
 
     def choose(self, setup: Setup) -> None:

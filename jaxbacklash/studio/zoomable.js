@@ -4,7 +4,7 @@ export function render({model, el}) {
   const bar = document.createElement("div")
   const paper = document.createElement("div")
   bar.className = "bar"
-  paper.className = "paper"
+  paper.className = "paper scroll"
   paper.tabIndex = 0
   paper.setAttribute("role", "group")
   figure.append(bar, paper)

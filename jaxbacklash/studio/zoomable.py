@@ -19,8 +19,8 @@ figure[hidden] { display: none; }
 .bar button { font: inherit; font-size: 0.85rem; min-width: 2rem; padding: 2px 8px; cursor: pointer; border-radius: 4px;
   border: 1px solid currentColor; background: transparent; color: inherit; }
 .bar button:focus-visible, .paper:focus-visible { outline: 3px solid #2b83c6; outline-offset: 1px; }
-.paper { overflow: hidden; touch-action: pan-x pan-y; }
-.paper svg { display: block; width: 100%; height: auto; }
+.paper { overflow: auto hidden; touch-action: pan-x pan-y; }
+.paper svg { display: block; width: 100%; min-width: 600px; height: auto; }
 """
 
 

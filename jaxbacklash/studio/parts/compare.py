@@ -48,4 +48,5 @@ class ComparePart(Part):
         one, two = (tree[number] for number in chosen)
         rows = [(row.what, row.first, row.second) for row in compared(one, two)]
         self.told.object = table("The two models", ["what", one.name, two.name], rows)
-        self.pictures.show([("stages", one.fit, two.fit), ("residuals", one.fit), ("residuals", two.fit)])
+        shown = [("stages", one.fit, two.fit), ("residuals", one.fit), ("residuals", two.fit)]
+        self.pictures.show(shown, ["", one.name, two.name])

@@ -30,6 +30,7 @@ class KeepPart(Part):
             folder, files = self.session.save(name)
             self.session.say(f"written: {folder}/{', '.join(files)}")
 
+        self.session.say("the model, the report and the Python are being written")
         self.desk.later(act)
 
     def refresh(self) -> None:

@@ -12,6 +12,7 @@ from ..select import select
 from .part import WIDE, Desk, Figures, Part, button, escaped, row, same, table, text
 
 SHOWN = 12
+NONE = "Nothing speaks for any of these effects: the record gives no reason to add one."
 HOW = {True: "refitted", False: "predicted"}
 
 
@@ -56,7 +57,7 @@ class MissingPart(Part):
             self.found.object = "" if found is None else f"<h3>What the search found</h3><pre>{escaped(found)}</pre>"
             self.take.visible = found is not None and bool(found.effects) and known
         path = self.session.tree.path(model.number) if known else []
-        self.fallen.show([("stages", *(one.fit for one in path))] if path else [])
+        self.fallen.show([("stages", *(one.fit for one in path))] if len(path) > 1 else [])
         self.pictures.show([("ranking", model.ranking)] if known and model.ranking is not None and len(model.ranking) else [])
 
     def _told(self, model: Any) -> None:
@@ -76,7 +77,8 @@ class MissingPart(Part):
             for one in list(model.ranking)[:SHOWN]
         ]
         heads = ["effect", "error over the noise with it", "evidence", "how it is known", "its values"]
-        self.told.object = table(f"What one more effect would bring to: {model.name}", heads, rows)
+        none = "" if any(one.evidence > 0.0 for one in model.ranking) else f"<p>{NONE}</p>"
+        self.told.object = none + table(f"What one more effect would bring to: {model.name}", heads, rows)
 
 
 def _values(entry: Any) -> str:

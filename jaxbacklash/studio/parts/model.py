@@ -8,6 +8,7 @@ import panel as pn
 import panel_material_ui as pmui
 
 from ...errors import BadInput
+from ...report.summary import verdict_words
 from ..comparing import told
 from ..figures import of_model
 from ..saving import verdict
@@ -62,11 +63,15 @@ class ModelPart(Part):
             self.pictures.show([])
             return
         fit = model.fit
-        rows = [(one.label or name, name, told(one), one.verdict) for name, one in fit.parameters.items()]
-        caution = "" if fit.adequate else "<p>Standard errors hold only if the model is right: it misses something still.</p>"
+        rows = [(one.label or name, name, told(one), _judged(one, not fit.adequate)) for name, one in fit.parameters.items()]
         self.told.object = (
             f"<h3>{escaped(model.name)}</h3><p>{escaped(verdict(model))}</p>"
             + table("Parameters", ["what", "name", "value ± standard error", "verdict"], rows)
-            + caution
         )
         self.pictures.show(of_model(model))
+
+
+def _judged(one: Any, doubted: bool) -> str:
+    """A parameter's verdict as the report gives it."""
+    said = verdict_words({"value": one.value, "verdict": one.verdict, "why": one.why}, doubted)
+    return f"{said['mark']} {said['text']}"

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import html
+import re
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 import panel as pn
@@ -24,8 +26,9 @@ p { margin: 0.3em 0; } ul { margin: 0.3em 0; padding-left: 1.2em; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; } caption { text-align: left; font-weight: bold; padding: 0.3em 0; }
 th, td { text-align: left; padding: 3px 14px 3px 0; border-bottom: 1px solid rgba(128, 128, 128, 0.4); vertical-align: top; }
+td:last-child { min-width: 8em; }
 pre { white-space: pre-wrap; overflow-wrap: anywhere; font-size: 0.85rem; }
-progress { width: 100%; }
+progress { width: 100%; } code { white-space: nowrap; }
 .bad { border-left: 4px solid #c62828; padding-left: 8px; }
 """
 
@@ -88,9 +91,11 @@ class Figures:
         pairs = zip(self._texts, self._drawings)
         self.content = pn.Column(*(one for pair in pairs for one in pair), **WIDE)
 
-    def show(self, wanted: Sequence[tuple[Any, ...]]) -> None:
-        """Show these: of which kind, and of what; each as soon as it is drawn."""
-        self.put([self._desk.gallery.figure(*one) for one in wanted])
+    def show(self, wanted: Sequence[tuple[Any, ...]], names: Sequence[str] = ()) -> None:
+        """Show these: of which kind, and of what; each as soon as it is drawn. ``names`` tell those of one kind apart."""
+        found = [self._desk.gallery.figure(*one) for one in wanted]
+        pairs = zip(found, names or [""] * len(found))
+        self.put([one if one is None or not name else replace(one, title=f"{one.title}: {name}") for one, name in pairs])
 
     def put(self, figures: Sequence[Figure | None]) -> None:
         """Show these pictures, and that others are being drawn (None)."""
@@ -120,6 +125,11 @@ def text(words: str = "", **how: Any) -> Any:
 def escaped(words: object) -> str:
     """Text that may hold anything, for HTML."""
     return html.escape(str(words))
+
+
+def worded(words: object) -> str:
+    """A sentence for HTML; options of a command that it names are not broken at the end of a line."""
+    return re.sub(r"(?<![\w-])--[a-z][a-z-]*", r"<code>\g<0></code>", escaped(words))
 
 
 def table(caption: str, heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:

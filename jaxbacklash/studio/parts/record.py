@@ -9,9 +9,11 @@ import panel_material_ui as pmui
 
 from ..choice import CHANNELS, WORDS, Choice, Opened, units_of
 from ..select import select
-from .part import WIDE, Desk, Figures, Part, button, escaped, row, same, table, text
+from .part import WIDE, Desk, Figures, Part, button, escaped, row, same, table, text, worded
 
 NO_FILE, NO_COLUMN, AS_STATED = "choose a file", "none", "as in the file"
+PAIR = {"flex": "0 1 460px", "min-width": "0", "max-width": "100%"}
+"""A column with its unit: both in one line where there is room, one below the other on a narrow window."""
 
 
 class RecordPart(Part):
@@ -33,13 +35,13 @@ class RecordPart(Part):
             for name in CHANNELS
         }
         self.words: Any = pmui.TextInput(
-            label="Further options, as on the command line", placeholder="--unwrap x --from 2", width=300
+            label="Further options, as on the command line", placeholder="--unwrap x --from 2", width=360
         )
         self.read: Any = button("Read it so", self._read_so)
         self.mend: Any = button("Mend", self._mend, visible=False)
         self.wrong, self.facts, self.notes = text(), text(), text()
         self.pictures = Figures(desk, 1)
-        pairs = [pn.Row(self.columns[name], self.units[name]) for name in CHANNELS]
+        pairs = [pn.FlexBox(self.columns[name], self.units[name], styles=PAIR) for name in CHANNELS]
         self.how = pn.Column(pn.FlexBox(*pairs, **WIDE), row(self.words, self.read), self.facts, visible=False, **WIDE)
         self.more: Any = pmui.Checkbox(label="Columns, units and other options", value=False)
         self.more.param.watch(lambda event: setattr(self.how, "visible", event.new), "value")
@@ -61,6 +63,7 @@ class RecordPart(Part):
 
     def _open(self, event: Any) -> None:
         if not self._following and event.new not in (NO_FILE, None):
+            self.session.say(f"reading {event.new}")
             self.desk.later(self.session.open, Choice(event.new))
 
     def _open_held(self, event: Any) -> None:
@@ -115,13 +118,13 @@ class RecordPart(Part):
             self.mend.visible, self.facts.object, self.notes.object = False, "", ""
             return
         held = self.session.heldout
-        said = [f'<p class="bad">{escaped(one.wrong)}</p>' for one in (opened, held) if one is not None and one.wrong]
+        said = [f'<p class="bad" role="alert">{worded(one.wrong)}</p>' for one in (opened, held) if one is not None and one.wrong]
         if opened.record is not None:
             said.insert(0, f"<p>{escaped(_summary(opened))}</p>")
         self.wrong.object = "".join(said)
         self.mend.visible = bool(opened.remedy)
         self.mend.label = f"Read it with {opened.remedy}" if opened.remedy else "Mend"
-        self.notes.object = "".join(f"<p>{escaped(note)}</p>" for note in opened.notes)
+        self.notes.object = "".join(f"<p>{worded(note)}</p>" for note in opened.notes)
         self.more.value = self.more.value or opened.record is None
         facts = opened.facts
         if facts is None:
@@ -135,9 +138,12 @@ class RecordPart(Part):
             widget.offer(options | extra, value)
             self.units[name].value = opened.choice.options.units.get(name, "")
         rows = [
-            (f"#{one.number} {one.name}", one.role, one.unit, _number(one.low), _number(one.high), "; ".join(one.findings))
+            (
+                f"#{one.number} {one.name}", one.role, one.unit or ("not stated" if one.role else ""), _number(one.low),
+                _number(one.high), "; ".join(one.findings),
+            )
             for one in facts.columns
-        ]
+        ]  # fmt: skip
         self.facts.object = table("Columns of the file", ["column", "read as", "unit", "from", "to", "noted"], rows)
 
 

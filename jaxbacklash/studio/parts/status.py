@@ -9,7 +9,7 @@ import panel as pn
 import panel_material_ui as pmui
 
 from ...plot.style import short
-from .part import WIDE, Desk, Part, button, escaped, row, same, text
+from .part import WIDE, Desk, Part, button, escaped, row, same, text, worded
 
 INDENT = "\u2003"
 
@@ -52,7 +52,7 @@ class StatusPart(Part):
             self._following = False
         role = "alert" if session.bad else "status"
         style = ' class="bad"' if session.bad else ""
-        said = f'<p role="{role}"{style}>{escaped(session.message)}</p>' if session.message else ""
+        said = f'<p role="{role}"{style}>{worded(session.message)}</p>' if session.message else ""
         if self.message.object != said:
             self.message.object = said
         self.tick()

@@ -69,6 +69,7 @@ class ValuesPart(Part):
             self.sliders[one.name] = slider
         self.place.objects = list(self.sliders.values())
         self.back.visible = True
+        self.told.object = "<p>The model is being computed with these values.</p>"
         self._ask()
 
     def _back(self) -> None:
