@@ -22,6 +22,9 @@ from .common import check_window, json_text, model_of_file, names, out_folder, p
 from .heldout import check_heldout
 from .reading import Reading
 
+OWN = {"--effects": 1, "--starts": 1, "--profile": 0, "--out": 1, "--json": 0, "--seed": 1}
+"""Options of ``fit`` that are not handed on to ``refine``, and how many words follow each."""
+
 
 def run(
     paths: Sequence[Path],
@@ -88,5 +91,32 @@ def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, *, silent
     elif not silent:
         print(fit_text(found, causes))
         print(result["cross_check"]["text"])
+        if not found.adequate and not causes and len(found.records) == 1:
+            print(f"next, to find what is missing: {refining(sys.argv[1:])}")
         if folder is not None:
             print(f"written: {folder}/result.json, model.toml, report.html")
+
+
+def refining(words: Sequence[str]) -> str:
+    """The command that looks for what a fit misses.
+
+    Parameters
+    ----------
+    words : of the fit, without the program's name
+
+    Examples
+    --------
+    >>> refining(["fit", "run1.csv", "--inertia", "3.16", "--effects", "gravity", "--out", "found"])
+    'jaxbacklash refine run1.csv --inertia 3.16'
+    """
+    kept, left = [], 0
+    for word in words[1:]:
+        if left:
+            left -= 1
+            continue
+        name, given, _ = word.partition("=")
+        if name in OWN:
+            left = 0 if given else OWN[name]
+        else:
+            kept.append(word)
+    return shlex.join(["jaxbacklash", "refine", *kept])

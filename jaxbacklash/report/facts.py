@@ -76,10 +76,10 @@ def cross_check_table(check: Any, last: Entry) -> dict[str, Any] | None:
         words = "The methods agree." if agrees else "The methods do not agree."
     if check.get("text"):
         said = [str(check["text"]), *(_sentence(why) for why in repeated if why not in str(check["text"]))]
-        return {"methods": [m.replace("_", " ") for m in methods], "rows": rows, "sentence": " ".join(said)}
+        return {"methods": [_method(m) for m in methods], "rows": rows, "sentence": " ".join(said)}
     within = f" Tolerance: {check['tolerance']}." if check.get("tolerance") and agrees is not None else ""
     why = f" {_sentence(check['why'])}" if check.get("why") else ""
-    return {"methods": [m.replace("_", " ") for m in methods], "rows": rows, "sentence": f"{words}{within}{why}"}
+    return {"methods": [_method(m) for m in methods], "rows": rows, "sentence": f"{words}{within}{why}"}
 
 
 def skeleton_tables(result: Entry) -> dict[str, Any] | None:
@@ -98,7 +98,11 @@ def skeleton_tables(result: Entry) -> dict[str, Any] | None:
             rows.append({"label": LABELS.get(name, "inertia J"), "cells": cells})
     warnings = [str(sentence) for sentence in result.get("warnings") or []]
     said = [*(why for why in repeated if why not in warnings), *warnings]
-    return {"methods": methods, "rows": rows, "warnings": said}
+    return {
+        "methods": [_method(m) for m in methods],
+        "rows": rows,
+        "warnings": [_sentence(why).removesuffix(".") for why in said],
+    }
 
 
 def _repeated(entries: Sequence[Any]) -> list[str]:
@@ -148,6 +152,11 @@ def _any_value(entry: Any, unit: str, repeated: Sequence[str] = ()) -> str:
             return UNKNOWN if not why else "none" if why in repeated else f"none: {why}"
         return brief({"unit": unit, **entry})
     return brief({"value": entry, "unit": unit}) if is_number(entry) else UNKNOWN
+
+
+def _method(name: str) -> str:
+    """A method's name as people write it."""
+    return name.replace("_", " ").replace("hilbert", "Hilbert transform")
 
 
 def _sentence(text: Any) -> str:

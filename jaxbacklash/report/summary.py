@@ -50,6 +50,7 @@ def summarise(result: Entry) -> dict[str, Any]:
         else _tiles([best_method(result)] if result.get("command") == "skeleton" else stages, record),
         "skeletons": skeleton_tables(result),
         "parameters": parameter_rows(stages, str(result.get("intervals_note") or "")),
+        "no_intervals": _no_intervals(result),
         "stages": stage_rows(stages, record) if len(stages) > 1 else [],
         "stage_heads": _stage_heads(stages),
         "scores": _scores(stages[-1], record) if stages else [],
@@ -115,7 +116,13 @@ def parameter_rows(stages: Sequence[Entry], note: str = "") -> list[dict[str, An
 
 
 def _noted(interval: str, note: str) -> str:
-    return f"none: it would hold {note}" if note and interval and interval != UNKNOWN else interval
+    return "none" if note and interval and interval != UNKNOWN else interval
+
+
+def _no_intervals(result: Entry) -> str:
+    """Why no interval is given, once for all parameters."""
+    note = str(result.get("intervals_note") or "")
+    return f"No intervals are given: they would hold {note}." if note else ""
 
 
 def stage_rows(stages: Sequence[Entry], record: Entry) -> list[dict[str, Any]]:

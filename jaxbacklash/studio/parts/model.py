@@ -64,9 +64,8 @@ class ModelPart(Part):
             return
         fit = model.fit
         rows = [(one.label or name, name, told(one), _judged(one, not fit.adequate)) for name, one in fit.parameters.items()]
-        self.told.object = (
-            f"<h3>{escaped(model.name)}</h3><p>{escaped(verdict(model))}</p>"
-            + table("Parameters", ["what", "name", "value ± standard error", "verdict"], rows)
+        self.told.object = f"<h3>{escaped(model.name)}</h3><p>{escaped(verdict(model))}</p>" + table(
+            "Parameters", ["what", "name", "value ± standard error", "verdict"], rows
         )
         self.pictures.show(of_model(model))
 
