@@ -4,6 +4,7 @@ What is looked for on it: faults that axe finds for people who cannot see or use
 """
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -118,6 +119,15 @@ class Hand:
     def gone(self, words):
         """Wait until the page says this no longer."""
         self.page.get_by_text(words, exact=True).wait_for(state="detached")
+
+    def drawn(self, name, after=""):
+        """Wait for the drawing of this name, another one than ``after``; its text."""
+        place, end = self.one("group", re.compile(f"^{name}")).locator("svg"), time.monotonic() + LONG
+        place.first.wait_for()
+        while (now := place.first.inner_html()) == after:
+            assert time.monotonic() < end
+            self.page.wait_for_timeout(20)
+        return now
 
     def idle(self):
         """Wait until nothing is being computed."""

@@ -180,10 +180,10 @@ def test_two_tabs_show_one_work_that_outlives_both_and_can_be_stopped(chromium, 
         assert one.one("radio", re.compile("^0: base model")).is_checked()
 
 
-def swaying(seconds):
+def swaying(seconds, seed):
     """A record as long as somebody takes one: a base that sways, and a link that follows."""
     t = np.arange(0.0, seconds, 0.002)
-    noise = np.random.default_rng(3)
+    noise = np.random.default_rng(seed)
     x, z = 0.05 * np.sin(9.0 * t), 0.02 * np.sin(9.0 * t + 0.3 * np.sin(t))
     columns = [t, x + 3e-5 * noise.standard_normal(t.size), z + 3e-5 * noise.standard_normal(t.size)]
     return "t,x,z\n" + "\n".join(",".join(f"{value:.6f}" for value in row) for row in zip(*columns)) + "\n"
@@ -192,8 +192,8 @@ def swaying(seconds):
 @pytest.mark.slow
 def test_the_first_picture_of_half_a_minute_is_there_within_three_seconds(chromium, bench):
     for number in range(TRIES):
-        (bench / f"{number}long.csv").write_text(swaying(30.0))
-    took = []
+        (bench / f"{number}long.csv").write_text(swaying(30.0, seed=number))
+    took, picture = [], ""
     with studio(bench) as url:
         hand = Hand(chromium, url)
         for number in range(TRIES):
@@ -201,7 +201,7 @@ def test_the_first_picture_of_half_a_minute_is_there_within_three_seconds(chromi
             begun = time.monotonic()
             hand.choose("File", f"{number}long.csv")
             hand.says(f"long{number}.csv: base motion")
-            hand.shown("group", re.compile("^The record"))
+            picture = hand.drawn("The record", after=picture)
             took.append(time.monotonic() - begun)
     print("seconds to the first picture:", took)
     assert min(took) < 3.0

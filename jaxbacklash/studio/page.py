@@ -18,6 +18,7 @@ from .parts.part import WIDE, Desk
 from .parts.record import RecordPart
 from .parts.status import StatusPart
 from .parts.values import ValuesPart
+from .preference import Preference
 from .session import Session
 
 PARTS = (RecordPart, ModelPart, FailurePart, MissingPart, ValuesPart, ComparePart, KeepPart)
@@ -53,7 +54,10 @@ def page(session: Session, gallery: Gallery, aside: ThreadPoolExecutor) -> Any:
     tabs.param.watch(lambda _: look(), "active")
     look()
     pn.state.add_periodic_callback(look, period=EVERY)
-    side = pn.Column(status.content, styles=SIDE)
+    preference: Any = Preference(width=0, height=0, margin=0)
+    side = pn.Column(status.content, preference, styles=SIDE)
     main = pn.Column(tabs, styles=MAIN)
     both = pn.FlexBox(side, main, **WIDE)
-    return pmui.Page(title="jaxbacklash studio", main=[both], sx=NAMELESS)
+    whole: Any = pmui.Page(title="jaxbacklash studio", main=[both], sx=NAMELESS)
+    preference.param.watch(lambda event: setattr(whole, "dark_theme", event.new), "dark")
+    return whole
