@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 
 from ..timeseries import ChaosReport
 from ..timeseries.driven import GROUP
@@ -220,7 +221,7 @@ def driven_growth(found: ChaosReport, name: str = "z", unit: str = "", *, ax: Wh
     right.plot(times, grown, color=MEASURED, lw=1.2, label="ln of a small difference")
     rate = (one.value or 0.0) / dt
     reach = [0.0, rate * (times[-1] - times[0]) / factor]
-    right.plot(times[[0, -1]], reach, color=MODEL, lw=1.4, ls=":", label=f"{rate:.3g} 1/s")
+    right.plot(times[[0, -1]], reach, color=MODEL, lw=1.4, ls=":", label=f"its mean rate, {rate:.3g} 1/s")
     right.axhline(0.0, color=ink(right), lw=0.5, ls="--")
     right.set(xlabel=f"time [{clock}]", ylabel="ln of its growth", xlim=(times[0], times[-1]))
     right.set_title("under the measured drive", loc="left")
@@ -232,5 +233,6 @@ def driven_growth(found: ChaosReport, name: str = "z", unit: str = "", *, ax: Wh
     left.plot(edges, -one.deviation * one.surface.force / dt**2, ".-", color=MEASURED, ms=4)
     left.axhline(0.0, color=ink(left), lw=0.5, ls="--")
     left.set(xlabel=with_unit(name, unit), ylabel=f"force over inertia [{unit or name}/s²]")
+    left.xaxis.set_major_locator(MaxNLocator(5))  # long numbers would run into one another
     left.set_title("the law of motion", loc="left")
     return axes

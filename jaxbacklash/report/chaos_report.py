@@ -21,11 +21,11 @@ def chaos_panels(found: ChaosReport, source: MeasuredSeries) -> list[Panel]:
     """The pictures of a chaos report with a sentence each."""
     return [
         Panel("The series", "The grey stretch above is what is drawn below.",
-              svg_of(plot.series, found, source.name, source.unit), "series"),
+              svg_of(plot.series, found, source.name, _unit(source)), "series"),
         *_driven(found, source),
         Panel("The state, one delay apart",
               "A thin, folded sheet is a sign of few degrees of freedom; a cloud is a sign of noise.",
-              svg_of(plot.attractor, found, source.unit), "phase"),
+              svg_of(plot.attractor, found, _unit(source)), "phase"),
         Panel("How neighbours part", _parting(found), svg_of(plot.stretching, found), "stretching",
               "The mean logarithm of the distance between states that were near. Exponential growth is a straight "
               "line. It begins where noise no longer hides it and ends where neighbours are as far apart as any two states. The "
@@ -51,12 +51,17 @@ def _driven(found: ChaosReport, source: MeasuredSeries) -> list[Panel]:
         said += " The verdict rests on this picture; the ones below look at the series as if nothing had driven it."
     name = "z" if source.name == "y" else source.name
     return [
-        Panel("Under the measured drive", said, svg_of(plot.driven_growth, found, name, source.unit), "driven",
+        Panel("Under the measured drive", said, svg_of(plot.driven_growth, found, name, _unit(source)), "driven",
               "The acceleration of the motion is fitted by tables of position and velocity and by the drive, all over the "
               "record, so no states need recur. On stretches it was not fitted to, the law misses the acceleration by "
               f"{100 * one.error:.2g} %. Its slope tells how a small difference changes from moment to moment; the drive is the "
               "same for both motions and drops out. Flat in the play and steep in contact is what parts them."),
     ]  # fmt: skip
+
+
+def _unit(source: MeasuredSeries) -> str:
+    """The unit of the series; a file need not state any, since a verdict on chaos asks for none."""
+    return source.unit or "unit of the file"
 
 
 def _parting(found: ChaosReport) -> str:
