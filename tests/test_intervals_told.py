@@ -75,7 +75,8 @@ def test_the_page_of_a_wrong_model_shows_none_and_the_result_has_a_flag(fitted, 
     assert all({"value", "stderr", "ci95", "unit"} <= set(entry) for entry in result["stages"][0]["parameters"].values())
     for row in summarise(result)["parameters"]:
         assert not INTERVAL.search(row["interval"])
-        assert ONLY in row["interval"] or row["values"] == []
+        assert row["interval"] == "none" or row["values"] == []
+    assert ONLY in summarise(result)["no_intervals"]
 
 
 def test_the_page_of_a_right_model_shows_them(right):
