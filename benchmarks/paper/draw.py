@@ -91,7 +91,7 @@ def _envelopes(c: dict[str, np.ndarray], *, ax: object = None) -> list[Axes]:
     for name, (label, colour, width) in METHODS.items():
         axes[0].plot(c[f"{name}_t"], c[f"{name}_amplitude"], color=colour, lw=width, label=label)
         axes[1].plot(c[f"{name}_t"], c[f"{name}_frequency"], color=colour, lw=width)
-    axes[1].plot([0.0, 30.0], [0.0, 12.0], color=ink(axes[1]), lw=0.8, ls=":", label="the base's own")
+    axes[1].plot([0.0, 30.0], [0.0, 12.0], color=ink(axes[1]), lw=1.3, ls=(0, (1, 2)), zorder=4, label="the base's own")
     axes[0].set(xlabel="time [s]", ylabel="envelope [deg]", xlim=(0.0, 30.0), ylim=(0.0, None))
     axes[1].set(xlabel="time [s]", ylabel="frequency [Hz]", xlim=(0.0, 30.0), ylim=(0.0, 15.0))
     handles, labels = (list(chain(*both)) for both in zip(*(one.get_legend_handles_labels() for one in axes)))
