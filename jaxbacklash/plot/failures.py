@@ -56,6 +56,7 @@ def misfit_and_torque(dependences: Sequence[Any], *, unit: str, ax: Where = None
         if entry.names and len(share) <= 6:
             top = 1.22 * float(np.nanmax(column(entry.misfit)))
             upper.set_ylim(0.0, max(top, 1.5))
+            upper.set_title("%: share of the torque's mean square", fontsize=8, loc="left")
             for middle, height, part in zip(0.5 * (edges[1:] + edges[:-1]), column(entry.misfit), share):
                 if np.isfinite(height):
                     upper.annotate(f"{100 * part:.0f} %", (middle, height), xytext=(0, 2), textcoords="offset points",
@@ -63,6 +64,9 @@ def misfit_and_torque(dependences: Sequence[Any], *, unit: str, ax: Where = None
     axes[0].set_ylabel("misfit over noise")
     if len(axes) > 1:
         axes[len(shown)].set_ylabel(with_unit("missing torque", unit))
+        for before, lower in pairwise(list(axes[len(shown) :])[::-1]):  # said once where all say the same
+            if before.get_title(loc="left") == lower.get_title(loc="left"):
+                before.set_title("", loc="left")
     return axes
 
 
