@@ -184,7 +184,7 @@ def swaying(seconds, seed):
     """A record as long as somebody takes one: a base that sways, and a link that follows."""
     t = np.arange(0.0, seconds, 0.002)
     noise = np.random.default_rng(seed)
-    x, z = 0.05 * np.sin(9.0 * t), 0.02 * np.sin(9.0 * t + 0.3 * np.sin(t))
+    x, z = (0.04 + 0.01 * seed) * np.sin(9.0 * t), 0.02 * np.sin(9.0 * t + 0.3 * np.sin(t))
     columns = [t, x + 3e-5 * noise.standard_normal(t.size), z + 3e-5 * noise.standard_normal(t.size)]
     return "t,x,z\n" + "\n".join(",".join(f"{value:.6f}" for value in row) for row in zip(*columns)) + "\n"
 
