@@ -76,7 +76,7 @@ def contestants(record: Record) -> dict[str, Callable[[], Any]]:
     plain = record.t, record.channels["x"], record.channels["z"], RIG.inertia, start
     known: dict[str, Any] = {
         "sigma_z": layout.noise[0], "sigma_x": layout.input_noise[0], "intervals": windows.intervals,
-        "longest": float(windows.panel),
+        "window": layout.length * layout.dt, "longest": float(windows.panel),
     }  # fmt: skip
 
     def ours() -> Any:

@@ -29,6 +29,7 @@ from jaxbacklash.fitting.setup import first_guess, make_problem
 from jaxbacklash.shooting.block_levenberg import BlockLevenbergMarquardt
 from jaxbacklash.shooting.multiple_shooting import per_window, residual_rows
 from jaxbacklash.shooting.problem import Problem, Unknowns
+from jaxbacklash.shooting.windows import cut
 
 MOST = 100
 """Steps at most."""
@@ -38,6 +39,8 @@ NEAR = 1e-6
 """Relative and absolute tolerance of optimistix's solvers, of unknowns and of residuals."""
 LARGEST = 200
 """Unknowns up to which optimistix's own solvers are run: a step of theirs grows with the third power."""
+WINDOW = 0.1
+"""Length of a shooting window [s]: longer than in a fit, so that a dense Jacobian has fewer columns."""
 OURS = "block Levenberg-Marquardt"
 THEIRS: dict[str, Callable[[], Any]] = {
     "optimistix.LevenbergMarquardt, QR": lambda: optx.LevenbergMarquardt(NEAR, NEAR),
@@ -53,7 +56,9 @@ THEIRS: dict[str, Callable[[], Any]] = {
 def problem_of(seconds: float) -> tuple[Problem, Unknowns]:
     """The joint's problem of a record of so many seconds, its windows free, and where to begin."""
     system = jb.base_motion_joint(RIG.inertia, **wild_start())
-    problem = make_problem(system, prepare(system, [make_record(seconds)], 0.2)[0], NAMES)
+    record = make_record(seconds)
+    finest = float(prepare(system, [record], None)[0].panel)
+    problem = make_problem(system, cut([record], WINDOW, longest_panel=(1.0 + 1e-6) * finest)[0], NAMES)
     start, used = first_guess(problem), int(problem.windows.used)
     # A program for any length of record has windows to spare: a dense Jacobian would count their unknowns too.
     of_windows = lambda p: (*per_window(p), p.windows.coefficients)  # noqa: E731

@@ -1,11 +1,11 @@
-"""The search over the arrow: steps that are turned down, and when it has seen enough."""
+"""The search by bordered block tridiagonal systems: steps that are turned down, and when it has seen enough."""
 
 import equinox as eqx
 import jax
 import numpy as np
 import pytest
 
-from jaxbacklash.fitting.search import TIES, tie_windows
+from jaxbacklash.fitting.continuation import TIGHTEST, tied
 from jaxbacklash.fitting.setup import first_guess, make_problem
 from jaxbacklash.parameters import values, with_values
 from jaxbacklash.shooting.block_levenberg import BlockLevenbergMarquardt
@@ -78,7 +78,7 @@ def test_where_a_jagged_cost_ends_the_search_nothing_is_left_to_gain(seed):
     builder, effects = joint("coulomb_joint", seed, 12.0)
     problem, _ = builder.problem(effects, builder.base)
     begin = minimise(problem, first_guess(problem), Levenberg(limit=60)).value
-    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIES[0][-1]))
+    problem = tied(problem, TIGHTEST)
     ended = minimise(problem, begin, Levenberg(damping=1e-9, limit=150))
     further = minimise(problem, ended.value, Levenberg(atol=1e-9, limit=60))
     assert int(ended.stats["steps"]) < 150
@@ -106,8 +106,14 @@ def test_a_parameter_at_its_bound_does_not_tear_windows_apart_that_are_tied():
             cap = np.where(np.array(names) == "stiffness", 0.0, problem.upper)
             problem = eqx.tree_at(lambda p: p.upper, problem, cap)
         begin = Unknowns(np.zeros(len(names)), starts.starts, starts.coefficients)
-        problem, solution, steps = tie_windows(problem, begin, TIES[0])
-        found.append((float(solution.stats["cost"]), steps, float(problem.rebuild(solution.value.theta).damper.damping)))
+        solution = minimise(tied(problem, TIGHTEST), begin, Levenberg(damping=1e-9))
+        found.append(
+            (
+                float(solution.stats["cost"]),
+                int(solution.stats["steps"]),
+                float(problem.rebuild(solution.value.theta).damper.damping),
+            )
+        )
     (cost, steps, damping), (alone, few, known) = found
     assert cost == pytest.approx(alone, rel=1e-6)
     assert damping == pytest.approx(known, rel=1e-3)

@@ -10,13 +10,10 @@ from jaxbacklash.criticism.model_builder import ModelBuilder
 from jaxbacklash.criticism.model_fitter import ModelFitter
 from jaxbacklash.effects import Contact, Damper
 from jaxbacklash.fitting.estimates import judge
-from jaxbacklash.fitting.fit import prepare
-from jaxbacklash.fitting.handed_on import led_in
 from jaxbacklash.fitting.hard import reach_of_sampling
-from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
+from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.records.relative_motion import check_answers
 from jaxbacklash.records.size import MOST_SAMPLES, check_size, needed_rate
-from jaxbacklash.shooting.levenberg import Levenberg, minimise
 from jaxbacklash.system import System
 from tests.independent.free_play import decay
 
@@ -134,19 +131,6 @@ def test_a_search_ends_after_so_many_steps_with_the_best_it_has():
         steps = EvidenceSearch(fitter).run()
     assert len(steps) == 1
     assert steps[0].model.names == frozenset()
-
-
-@pytest.mark.slow
-def test_a_window_of_a_decay_is_led_in_by_its_samples_alone():
-    """Of z alone there is no base to add: of a base motion whose x was named otherwise, the first window sticks."""
-    record = shaken(own=0.02, seconds=3.0)
-    alone = jb.Record(record.t, {"z": record.channels["y"] - record.channels["x"]})
-    system, free, _ = base_system(alone, "joint", 2.0)
-    windows, _, _ = prepare(system, [alone], None)
-    problem = make_problem(system, windows, free)
-    found = minimise(problem, first_guess(problem), Levenberg(limit=1))
-    starts = led_in(problem, found, np.array([0]))
-    assert abs(starts[0, 0] - alone.channels["z"][0]) < 2e-3
 
 
 @pytest.mark.slow

@@ -5,7 +5,7 @@ import pytest
 from scipy.interpolate import BSpline
 
 from jaxbacklash.criticism.model_fitter import ModelFitter
-from jaxbacklash.fitting.search import inverse_information
+from jaxbacklash.fitting.information import inverse_information
 from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import with_values

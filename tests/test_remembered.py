@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from jaxbacklash.effects import BoucWen, Dahl, FlexibleLink, Lugre
-from jaxbacklash.fitting.fit import prepare
-from jaxbacklash.fitting.search import freedom
+from jaxbacklash.fitting.information import freedom
 from jaxbacklash.fitting.setup import first_guess, make_problem
 from jaxbacklash.mechanics import canonical_name
 from jaxbacklash.parameters import values
 from jaxbacklash.shooting.levenberg import Levenberg, minimise
 from jaxbacklash.shooting.multiple_shooting import KEPT, _first_remembered, tie_weights
+from jaxbacklash.shooting.windows import cut
 from tests.hidden import fitter, hidden, noisier
 
 
@@ -26,7 +26,7 @@ def own():
 @pytest.fixture(scope="module")
 def free(own):
     """Dahl's law fitted to windows that are free to begin where their samples put the link: the problem, and its minimum."""
-    windows, _, _ = prepare(own.base, [own.record], 0.2)
+    windows, _ = cut([own.record], 0.1)
     problem = make_problem(own.base.with_effects(Dahl(1.0, 500.0)), windows, (*own.base_free, "dahl.Fc", "dahl.sigma"))
     return problem, minimise(problem, first_guess(problem), Levenberg(limit=60))
 
@@ -52,7 +52,7 @@ def test_no_memory_leaves_its_reach(effect):
             assert abs(s) <= effect.reach * (1.0 + 1e-6)
 
 
-def test_free_windows_hand_on_what_is_remembered(free):
+def test_what_is_remembered_goes_on_through_free_windows(free):
     """The motion jumps as the noise has it, the memory hardly does; and the fit finds what was hidden."""
     problem, minimum = free
     assert float(problem.tie) == 0.0
@@ -105,7 +105,7 @@ def test_only_what_has_a_reach_is_tied_where_windows_are_free(own):
         np.testing.assert_allclose(sharp[0, 2:], 1e4 * np.array(kept) if any(kept) else 100.0 * own.windows.drop[1])
 
 
-def test_what_is_handed_on_is_no_freedom(own):
+def test_what_goes_on_from_window_to_window_is_no_freedom(own):
     """A flexible link has two numbers to choose in every free window, which count; friction's memory has one in the record."""
     n = windows_in_use(own)
     plain, rubbing, bending = (

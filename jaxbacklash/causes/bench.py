@@ -14,9 +14,10 @@ import equinox as eqx
 import numpy as np
 
 from ..errors import BadInput, NoAnswer
+from ..fitting.information import freedom
 from ..fitting.result import Fit
 from ..fitting.score import Score, score
-from ..fitting.search import freedom, search
+from ..fitting.search import search
 from ..parameters import values, with_values
 from ..records import Record
 from ..shooting.levenberg import Levenberg, Minimum, minimise

@@ -11,8 +11,9 @@ from ..errors import BadInput
 from ..fitting.chance import beyond_chance, misses
 from ..fitting.estimates import judge
 from ..fitting.fit import ABSOLUTE
+from ..fitting.information import inverse_information
 from ..fitting.result import Fit
-from ..fitting.search import inverse_information, silent
+from ..fitting.search import silent
 from ..parameters import values, with_values
 from ..records import Record
 from ..regression.equation_error import Start

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
+from ..fitting import left_out
+from ..fitting.left_out import CHANCE, SIGMAS
 from ..mechanics import AbstractEffect
 from ..parameters import Spec, specs, values
 from .fitted_model import FittedModel
@@ -13,10 +13,6 @@ from .model_builder import ModelBuilder, strengths
 
 SURE = 4.0
 """A gain of so many times what is demanded is no accident."""
-NEAR_NOISE, SIGMAS, CHANCE = 1.01, 3.0, 2.0
-"""Root of the reduced chi-square up to which what is left counts as noise, since the noise itself is estimated; how many standard
-deviations of that root may come on top for a verdict (in 80 records of right models it did not exceed 1.013); and how many as
-long as there is more to add, when a small misfit that something else makes is still to be told from chance."""
 
 
 def demanded(fitter: ModelBuilder) -> float:
@@ -36,9 +32,8 @@ def noise_too_large(model: FittedModel) -> bool:
 
 
 def most_of_noise(model: FittedModel, sigmas: float = SIGMAS) -> float:
-    r"""The largest root of the reduced chi-square that noise may leave: its standard deviation is :math:`1/\sqrt{2\nu}`, with
-    :math:`\nu` degrees of freedom."""
-    return NEAR_NOISE + sigmas / math.sqrt(2.0 * max(model.freedom, 1.0))
+    """The largest misfit of a model that noise may leave, see `jaxbacklash.fitting.left_out.most_of_noise`."""
+    return left_out.most_of_noise(model.freedom, sigmas)
 
 
 def leaves_a_rest(model: FittedModel) -> bool:

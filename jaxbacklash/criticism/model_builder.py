@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from functools import cached_property
 
 import equinox as eqx
 import numpy as np
@@ -19,7 +18,7 @@ import numpy as np
 from ..fitting.fit import prepare
 from ..fitting.left_over import quieter
 from ..fitting.score import Score, begin_anew, score
-from ..fitting.setup import free_names, held_system, make_problem
+from ..fitting.setup import free_names, make_problem, stick_slip_system
 from ..mechanics import AbstractEffect, catalogue
 from ..parameters import specs
 from ..records import Record
@@ -31,10 +30,6 @@ from ..shooting.windows import Layout, Windows
 from ..system import System
 from .fitted_model import FittedModel
 from .laws_for import laws_for
-
-SHOOTING = 0.025
-"""Length of a shooting window [s], eight samples at least: the unknown torque acts where windows join, so they are short beside
-the time in which a missing torque changes."""
 
 
 class ModelBuilder:
@@ -49,9 +44,10 @@ class ModelBuilder:
     beside : another record that will be predicted with the same program
 
     Attributes: ``windows``, ``layout`` and ``group``, the shooting windows, where they lie in the record, and how many of them
-    make a window whose error is quoted; ``laws`` that may be proposed, by canonical name, and ``static``, those without states;
-    ``weak_form`` of the record; for a record of transmitted force ``outright``, laws of friction that may hold the link, and
-    ``gripped``, the joint with them from its force loop; ``pace``, the system by whose frequencies windows are cut.
+    make a window whose error is quoted; ``quoted``, the same as they were cut, before any noise was taken from a model; ``laws``
+    that may be proposed, by canonical name, and ``static``, those without states; ``weak_form`` of the record; for a record of
+    transmitted force ``outright``, laws of friction that may hold the link, and ``gripped``, the joint with them from its force
+    loop; ``pace``, the system by whose frequencies windows are cut.
     """
 
     def __init__(
@@ -64,7 +60,9 @@ class ModelBuilder:
         self.gripped = with_friction(record, base, self.base_free, self.outright)
         self.pace = self.gripped or base
         self.beside = beside
-        self.windows, self.layout, self.group = prepare(self.pace, [record], window, shooting=SHOOTING)
+        least = 0 if beside is None else prepare(self.pace, [beside], window)[0].intervals
+        self.quoted = prepare(self.pace, [record], window, intervals=least)
+        self.windows, self.layout, self.group = self.quoted
         self.noise_factor = 1.0
         self.laws: dict[str, type[AbstractEffect]]
         self.static: dict[str, type[AbstractEffect]]
@@ -132,18 +130,10 @@ class ModelBuilder:
         self.layout = replace(self.layout, noise=tuple(factor * n for n in self.layout.noise))
 
     def scored(self, model: FittedModel) -> Score:
-        """What a model misses its record by, as every command tells it: in the windows of a fit, which are longer."""
-        windows, layout, group = self.quoted
+        """What a model misses its record by, as every command tells it."""
         problem, _ = self.problem(self.effects(model), model.system)
-        problem = eqx.tree_at(lambda p: p.windows, problem, windows.noisier(self.layout.noise[0] / layout.noise[0]))
         begin = begin_anew(problem, np.zeros(problem.directions.shape[1]))
-        return score(problem, begin, replace(layout, noise=self.layout.noise), group=group)[0][0]
-
-    @cached_property
-    def quoted(self) -> tuple[Windows, Layout, int]:
-        """The windows whose error is quoted, their layout, and how many shooting windows each has."""
-        least = 0 if self.beside is None else prepare(self.pace, [self.beside], self.window)[0].intervals
-        return prepare(self.pace, [self.record], self.window, intervals=least)
+        return score(problem, begin, self.layout, group=self.group)[0][0]
 
     def too_loud(self, model: FittedModel) -> float:
         """By which factor the noise is to be taken beside a model, 1 where that leaves as much."""
@@ -167,7 +157,7 @@ def with_friction(record: Record, base: System, free: tuple[str, ...], names: tu
     if record.kind != "transmitted" or not names:
         return None
     known = None if "inertia" in free else float(base.inertia)
-    return held_system(record, "joint" if base.has_play else "linear", known, names)[0]
+    return stick_slip_system(record, "joint" if base.has_play else "linear", known, names)[0]
 
 
 def strengths(effect: AbstractEffect) -> tuple[str, ...]:

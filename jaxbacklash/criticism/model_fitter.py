@@ -9,14 +9,14 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..fitting.continuation import LOOSEST, TIGHTEST, Continued, continued, in_one_run, log_evidence, sharpened, tied
-from ..fitting.search import freedom
+from ..fitting.continuation import LOOSEST, TIGHTEST, Continued, continued, in_one_run, sharpened
+from ..fitting.information import freedom
+from ..fitting.left_out import excess
 from ..fitting.setup import first_guess, read_through
 from ..fitting.stick_slip import sticks_and_slips
 from ..mechanics import AbstractEffect
 from ..parameters import values, with_values
 from ..records import Record
-from ..shooting.levenberg import Levenberg, Minimum, minimise
 from ..shooting.problem import Unknowns
 from ..system import System
 from .evidence import correlation_length, leaves_noise, measures_only
@@ -119,16 +119,6 @@ class ModelFitter(ModelBuilder):
         """Minus twice the log prior of a set of laws: what measures only is the less likely of two that do the same."""
         return MEASURING * sum(measures_only(self.laws[n]) for n in names)
 
-    def _rest(self, found: Continued) -> float:
-        """By how much minus twice the log evidence is above that of one trajectory that leaves noise alone.
-
-        Such a one would have half a unit of cost for each degree of freedom, and the log-determinants of this model's windows.
-        """
-        tight = tied(found.problem, TIGHTEST)
-        seen = minimise(tight, found.minimum.value, Levenberg(limit=1))
-        stats = {**seen.stats, "cost": np.asarray(0.5 * freedom(tight, tied=True))}
-        return 2.0 * (log_evidence(tight, Minimum(seen.value, stats)) - found.log_evidence)
-
     def _model(self, found: Continued, names: frozenset[str], free: tuple[str, ...]) -> FittedModel:
         problem, stats = found.problem, found.minimum.stats
         moved = np.asarray(problem.parameters(found.minimum.value.theta))
@@ -140,7 +130,7 @@ class ModelFitter(ModelBuilder):
         cost = float(np.nan_to_num(stats["cost"], nan=np.inf))
         whole = found.tie >= TIGHTEST
         count = freedom(problem, tied=True)
-        rest = 2.0 * cost - count if whole else self._rest(found)
+        rest = excess(found)
         # What a model leaves out counts as if it were left as misfit by one trajectory.
         misfit = np.sqrt(max(1.0 + rest / count, 0.0))
         return FittedModel(

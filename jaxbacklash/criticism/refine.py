@@ -15,12 +15,12 @@ from ..fitting.chance import explains
 from ..fitting.counts import few_counts
 from ..fitting.estimates import inflation, judge
 from ..fitting.fit import ABSOLUTE, prepare
+from ..fitting.information import inverse_information
 from ..fitting.left_over import predict, why_open
 from ..fitting.result import Fit
 from ..fitting.score import Score
-from ..fitting.search import ADEQUATE, inverse_information, silent
+from ..fitting.search import silent
 from ..fitting.setup import base_system, free_names
-from ..fitting.stick_slip import correlation
 from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..records.force import tell_way
@@ -156,10 +156,7 @@ class _Judge:
         held = None if self.heldout is None else self._predict(problem)
         q = len(free)
         scales = model.scales[:q]
-        runs = fitter.grips(model.names) and model.misfit >= ADEQUATE
-        left = scored[0].residual
-        pieces = correlation(left, np.ones(left.size)) if runs else 1.0
-        excess = inflation(model.misfit, scored[0].rms, tied=model.tied, correlation=pieces)
+        excess = inflation(model.misfit, scored[0], tied=model.tied, one_run=fitter.grips(model.names))
         covariance = excess * inverse_information(model.information[:q, :q]) * np.outer(scales, scales)
         stderr = dict(zip(free, np.sqrt(np.maximum(np.diag(covariance), 0.0))))
         system = model.pruned

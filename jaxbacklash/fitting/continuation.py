@@ -28,7 +28,7 @@ from ..shooting.levenberg import Levenberg, Minimum, minimise
 from ..shooting.multiple_shooting import tie_weights
 from ..shooting.problem import Problem, Unknowns
 from .friction_homotopy import with_friction_widths
-from .search import freedom
+from .information import freedom
 from .stick_slip import search_stick_slip
 
 LOOSEST, TIGHTEST = 1e-4, 100.0
@@ -168,13 +168,19 @@ def sharpened(found: Continued, speeds: Mapping[str, float]) -> Continued:
     return found
 
 
-def in_one_run(problem: Problem) -> Continued:
+def in_one_run(problem: Problem, theta: np.ndarray | None = None) -> Continued:
     """Fit a link that dry friction holds and that is not seen: each trial is one run through the record, and nothing is left out.
 
     Where friction holds the link, a window's start has no sensitivity to anything, so that windows of their own tell nothing.
+
+    Parameters
+    ----------
+    problem : the model with its free parameters
+    theta : (q,) parameters to begin from, in units of their scale; default as they are
     """
     at = tied(problem, TIGHTEST)
-    unknowns, seen, steps = search_stick_slip(problem, np.zeros(problem.directions.shape[1]), limit=LAST)
+    begin = np.zeros(problem.directions.shape[1]) if theta is None else theta
+    unknowns, seen, steps = search_stick_slip(problem, begin, limit=LAST)
     if float(seen["cost"]) < 0.5 * NEAR_ENOUGH**2 * freedom(problem, tied=True):
         # Near the record the input may follow its own noise.
         further = minimise(at, unknowns, Levenberg(limit=LAST, atol=CLOSELY, damping=1e-9))

@@ -14,6 +14,8 @@ from ..records import Record
 from ..regression.force_loop import NOTHING
 from ..system import System
 from .hard import SHORTEST, contact_samples, most_play, reach_of_sampling
+from .score import Score
+from .stick_slip import correlation
 
 FOUND, ONE_SIDED, UNDETERMINED = "found", "one-sided", "not determined"
 MOST_UNCERTAIN = 0.5
@@ -22,6 +24,8 @@ CLEAR = 5.0
 """Standard errors that a contact stiffness has to stand clear of zero."""
 ONE_WITH = 0.9995
 """Correlation of two errors from which on only a combination of the two parameters is determined: it prints as 1.000."""
+CORRELATED = 1.25
+"""Misfit, in units of the noise, from which on what one run misses by is no noise."""
 NORMAL_95 = float(ndtri(0.975))
 BELOW_95 = float(ndtri(0.95))
 BOUNDED = ("damping", "backlash")
@@ -90,18 +94,21 @@ def line(estimate: Estimate, note: str = "") -> str:
     return f"{text}  [{note}]" if note else text
 
 
-def inflation(misfit: float, error: float, *, tied: bool, correlation: float = 1.0) -> float:
+def inflation(misfit: float, score: Score, *, tied: bool, one_run: bool = False) -> float:
     """By how much variances exceed what the noise alone makes of them, at least 1: the one way to an interval of every command.
 
     Parameters
     ----------
     misfit : root of the reduced chi-square where the fit has ended
-    error : prediction error of the windows that are quoted, in units of the noise. Where windows are free, each takes in by its
-        own start most of what the model lacks, and the longer ones that are quoted show what that hides
+    score : of the windows that are quoted: where the windows of a fit do not join, they show what each hides by its own start
     tied : whether the fit is one trajectory, of which the misfit tells all
-    correlation : how many samples of the residual count for one, where they are of one piece
+    one_run : whether the trajectory is a run whose starts nothing moves, as of a link that friction holds: what it misses by
+        then is correlated over many samples, and so many count for one
     """
-    return max(1.0, misfit**2) * correlation if tied else max(1.0, error**2)
+    if not tied:
+        return max(1.0, score.rms**2)
+    correlated = one_run and misfit >= CORRELATED
+    return max(1.0, misfit**2) * (correlation(score.residual, np.ones(score.residual.size)) if correlated else 1.0)
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ from .left_over import EXPLAINED, predict, settle_noise, why_open
 from .profile import with_profiles
 from .result import Fit
 from .score import Score, begin_anew, score
-from .search import Found, misfit, search, silent
+from .search import Found, search, silent
 from .setup import base_system, check_motion, free_names, make_problem
 from .stick_slip import sticks_and_slips
 
@@ -145,7 +145,7 @@ def fit(
     held = predict_record(fitted, heldout, window=window, free=names, known=known) if heldout is not None else None
     clock["score"] = time.perf_counter()
 
-    excess = inflation(misfit(found), scored[0].rms, tied=found.tied, correlation=found.correlation)
+    excess = inflation(found.misfit, scored[0], tied=found.tied, one_run=sticks_and_slips(system))
     covariance = excess * found.covariance
     stderr = dict(zip(names, np.sqrt(np.diag(covariance))))
     per_inertia = inertia is None and chosen[0].kind not in ABSOLUTE
@@ -182,7 +182,7 @@ def _harder(
         other = search(begin, again[0], names, starts=1, seed=seed, rough=False, progress=progress)
     except NoAnswer:
         return found, begun
-    return (other, (begin, *again)) if misfit(other) < misfit(found) else (found, begun)
+    return (other, (begin, *again)) if other.misfit < found.misfit else (found, begun)
 
 
 def _between_samples(
@@ -209,16 +209,14 @@ def _between_samples(
 
 
 def prepare(
-    system: System, records: Sequence[Record], window: float | None, *, intervals: int = 0, shooting: float | None = None
+    system: System, records: Sequence[Record], window: float | None, *, intervals: int = 0
 ) -> tuple[Windows, Layout, int]:
     """Shooting windows for a system like this one, and how many of them make a score window of the wished length.
 
-    ``intervals`` asks for at least so many spline intervals a window, so that two records may share a compiled program;
-    ``shooting`` for shooting windows of another length [s].
+    ``intervals`` asks for at least so many spline intervals a window, so that two records may share a compiled program.
     """
     dt = records[0].dt
     window = score_window(dt, window)
-    shooting = shooting_window(dt, window) if shooting is None else min(shooting, 0.5 * window)
     # Without the noise of a base motion a record says ten times more: its panels have to be finer.
     finer = 1.0 if records[0].kind == "base_motion" else 2.0
     longest = longest_panel(dt) / finer
@@ -230,7 +228,7 @@ def prepare(
         play = float(getattr(system.contact, "backlash", 0.0))  # a plain spring has none
         crossing = min(crossing_time(r, play, period / 16.0) for r in records)
         longest = min(longest, max(min(period / (32.0 * finer), max(crossing, period / 256.0)), dt / PANELS))
-    windows, layout = cut(records, shooting, longest_panel=longest, least=intervals)
+    windows, layout = cut(records, shooting_window(window), longest_panel=longest, least=intervals)
     if system.observed == "T" and system.contact is not None:
         # Ties are of motion: the noise of a force counts as the motion that would make it in contact.
         windows = eqx.tree_at(lambda w: w.drop, windows, windows.drop * float(system.contact.stiffness))

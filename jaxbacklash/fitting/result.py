@@ -153,7 +153,7 @@ def text(fit: Fit, causes: Sequence[Named] = ()) -> str:
     note = doubt(fit)
     lines += [line(estimate, note) for estimate in fit.parameters.values()]
     lines += _correlations(fit)
-    how = "joined into one continuous motion" if fit.tied else "each with a start of its own"
+    how = "joined into one continuous motion" if fit.tied else "apart by what a torque left out does"
     if fit.tried:
         lines.append(f"{fit.agreeing} of {fit.tried} starts reached this minimum; windows {how}; {fit.steps} steps")
     else:

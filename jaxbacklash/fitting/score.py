@@ -16,13 +16,12 @@ from ..compiled import kept_jit
 from ..frames import dataset
 from ..parameters import values, with_values
 from ..shooting.lengths import SCORE_WINDOW
-from ..shooting.levenberg import Levenberg, Minimum, minimise
+from ..shooting.levenberg import Levenberg, minimise
 from ..shooting.multiple_shooting import residuals
 from ..shooting.problem import Problem, Unknowns
 from ..shooting.windows import Layout
 from ..showing import Shown
-from .handed_on import follows, handed_on
-from .led_on import led_on
+from .continuation import tied
 from .setup import first_guess
 
 NEAR = 1e-4
@@ -31,8 +30,11 @@ CLEARLY = 1e-3
 """The same, as a share of what the misfit exceeds the noise by."""
 STEPS, REMEMBERED = 20, 60
 """Steps allowed to a score; and to that of a law that remembers, which creeps where noise hides what is remembered."""
-ROUNDS, ON = 6, 0.01
-"""How often a search of the starts goes on, and the share of half the sum of squares that it must promise, and gain, for that."""
+JOINED, NEARLY_FREE = 1.0, 1e-2
+"""Weight of the ties between the shooting windows of a score window; and that from which on they grow where a search with the
+former does not arrive."""
+FURTHER = 0.01
+"""Share of half the sum of squares that a further step promises where a search has not arrived."""
 kept_residuals = kept_jit(residuals)
 
 
@@ -158,32 +160,18 @@ def score(
     for first, count in zip(layout.first, layout.windows):
         index = np.arange(count)
         tie[first : first + count] *= through | (index % group != group - 1)
-    still = eqx.tree_at(lambda p: (p.windows.tie, p.tie), still, (tie, np.asarray(1.0)))
+    still = eqx.tree_at(lambda p: p.windows.tie, still, tie)
     begin = Unknowns(np.zeros(unknowns.theta.shape), unknowns.starts, unknowns.coefficients)
     near = NEAR * max(1, int(problem.windows.used))
     # An error of a model that is clearly wrong is quoted to three digits: its starts need not creep on for a fourth.
     how = Levenberg(atol=near, rtol=CLEARLY, damping=1e-6, limit=STEPS if begin.starts.shape[0] == 2 else REMEMBERED)
-    solution = _settled(still, led_on(still, begin, follows(problem)), how)
+    still = tied(still, JOINED)
+    solution = minimise(still, begin, how)
+    if float(solution.stats["promise"]) > FURTHER * float(solution.stats["cost"]):
+        solution = minimise(still, minimise(tied(still, NEARLY_FREE), begin, how).value, how)
     found, predicted = solution.value, solution.stats["predicted"]
     scores = tuple(_summarise(still, found, predicted, layout, group, i) for i in range(len(layout.first)))
     return scores, Unknowns(unknowns.theta, found.starts, found.coefficients)
-
-
-def _settled(still: Problem, begin: Unknowns, how: Levenberg) -> Minimum:
-    """The starts searched for, again from where the search has ended as long as that clearly helps.
-
-    All windows share one step size: a few that creep round a corner, or have stuck at one, keep all others where they are.
-    """
-    found = minimise(still, begin, how)
-    for _ in range(ROUNDS):
-        cost = float(found.stats["cost"])
-        if not float(found.stats["promise"]) > ON * cost:
-            break
-        again, _ = handed_on(still, found, how)
-        found = again if again is not found else minimise(still, found.value, how)
-        if not cost - float(found.stats["cost"]) > ON * cost:
-            break
-    return found
 
 
 def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout, group: int, record: int) -> Score:

@@ -15,6 +15,7 @@ from ..errors import BadInput
 from ..mechanics import AbstractEffect, Drive, canonical_name, catalogue, motion_of
 from ..parameters import ravel, specs, values, with_values
 from ..records import Record
+from ..regression.along_motion import Motion, own_states
 from ..regression.equation_error import Start, estimate
 from ..regression.force_loop import read_loop
 from ..shooting.problem import Problem, Unknowns
@@ -55,7 +56,7 @@ def base_system(
     if inertia is not None and not (np.isfinite(inertia) and inertia > 0):
         raise BadInput(f"--inertia {inertia:g}: wanted a positive number of kg m^2 (kg for a translating mass)")
     if record.kind == "transmitted":
-        return held_system(record, model, inertia, effects)
+        return stick_slip_system(record, model, inertia, effects)
     known = inertia
     if inertia is None and record.kind != "force":
         known = 1.0
@@ -70,7 +71,7 @@ def base_system(
     return system, free + free_names(system), start
 
 
-def held_system(
+def stick_slip_system(
     record: Record, model: str, inertia: float | None, effects: Sequence[AbstractEffect | str] = ()
 ) -> tuple[System, tuple[str, ...], Start]:
     """`base_system` for a record of transmitted force, started from its force loop: a link that friction at the ground holds.
@@ -219,6 +220,8 @@ def first_guess(problem: Problem) -> Unknowns:
         level = 10.0 / np.max(np.asarray(w.weight))
         y, dy = y + np.asarray(place(system, w.t0, np.asarray(w.measured)[:, 0], level)), 0.0 * dy
     starts = read_through(w, at_rest(w, system, y, dy), system)
+    if len(starts) > 2 and system.observed != "T":
+        starts = np.concatenate([starts[:2], followed(w, system, starts[0], starts[1])])
     return Unknowns(np.zeros(problem.directions.shape[1]), starts, np.asarray(w.coefficients))
 
 
@@ -226,9 +229,33 @@ def at_rest(w: Windows, system: System, y: np.ndarray, dy: np.ndarray) -> np.nda
     """Starts (n, W) of a link that is at ``y``, ``dy`` (W,): what laws remember is what they would of nothing before that."""
     if len(system.state_names) == 2:
         return np.stack([y, dy])
-    z, dz = _relative(w, y, dy)
+    z, dz = relative(w, y, dy)
     full = system.rest(w.t0, y, dy, Drive(y - z, dy - dz, 0.0 * y))
     return np.stack([np.broadcast_to(s, y.shape) for s in full])
+
+
+def followed(w: Windows, system: System, y: np.ndarray, dy: np.ndarray) -> np.ndarray:
+    """Internal states (S, W) of all laws where windows begin, as they follow the measured motion from one window to the next.
+
+    Parameters
+    ----------
+    w : the windows
+    system : its laws, in a joint like this one
+    y, dy : (W,) motion of the link where windows begin; between, it is the cubic that meets both
+    """
+    length = w.samples * w.every * float(w.panel)
+    s = np.arange(w.samples) / w.samples
+    following = np.stack([np.append(v[1:], v[-1]) for v in (y, dy)])
+    ends = np.stack([y, length * dy, following[0], length * following[1]], axis=1)
+    place = np.stack([(1 + 2 * s) * (1 - s) ** 2, s * (1 - s) ** 2, s**2 * (3 - 2 * s), s**2 * (s - 1)])
+    speed = np.stack([6 * s * (s - 1), 1 - 4 * s + 3 * s**2, 6 * s * (1 - s), 3 * s**2 - 2 * s]) / length
+    base = np.zeros((2, y.size * w.samples))
+    if w.intervals and not w.by_force:
+        base = np.stack([(_local(w) @ np.asarray(w.basis)[k, : -1 : w.every].T).ravel() for k in (0, 1)])
+    t = float(w.panel) * w.every * np.arange(y.size * w.samples)
+    motion = Motion(t, (ends @ place).ravel(), (ends @ speed).ravel(), base[0], base[1], np.zeros_like(t))
+    laws = (system.effects[name] for name in sorted(system.effects))
+    return np.stack([state[:: w.samples] for law in laws if law.states for state in own_states(law, system, motion)])
 
 
 def read_through(w: Windows, starts: np.ndarray, system: System, before: System | None = None) -> np.ndarray:
@@ -239,7 +266,7 @@ def read_through(w: Windows, starts: np.ndarray, system: System, before: System 
     if system.observed == "T":
         return starts
     y, dy = starts[0], starts[1]
-    z, dz = _relative(w, y, dy) if system.observed == "z" else (y, dy)
+    z, dz = relative(w, y, dy) if system.observed == "z" else (y, dy)
     seen, slope = (z, np.ones_like(z)) if before is None else _chain(before, z)
     place = z
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # a chain may show nothing of a motion
@@ -269,10 +296,16 @@ def _through(chain: dict[str, AbstractEffect], place: np.ndarray) -> Any:
     return jax.jvp(lambda value: observe(chain, value), (place,), (jnp.ones_like(place),))
 
 
-def _relative(w: Windows, y: np.ndarray, dy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def relative(w: Windows, y: np.ndarray, dy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Motion (W,) of a link against its base where windows begin, from that against the ground, ``y`` and ``dy``."""
     if not w.intervals or w.by_force:
         return y, dy
+    local = _local(w)
+    return y - local @ w.basis[0, 0], dy - local @ w.basis[1, 0]
+
+
+def _local(w: Windows) -> np.ndarray:
+    """Spline coefficients (W, m + 5) that each window sees, those included that it shares with the next one."""
     own = np.asarray(w.coefficients)
     following = np.concatenate([own[1:], np.zeros_like(own[:1])])
-    local = np.concatenate([own, following[:, : w.basis.shape[2] - w.intervals]], axis=1)
-    return y - local @ w.basis[0, 0], dy - local @ w.basis[1, 0]
+    return np.concatenate([own, following[:, : w.basis.shape[2] - w.intervals]], axis=1)

@@ -1,18 +1,18 @@
 """How long windows and integration panels are: by the clock for records of hundreds of hertz, by samples for slower ones.
 
-A window that is shot through on its own has to hold more samples than unknowns, whatever the rate, or it follows the noise; and a
-joint whose motion shows at a sample every second does not need a panel every two milliseconds.
+A torque that a model leaves out acts where shooting windows join, so that these are short beside the time in which it changes. A
+window whose error is quoted is many of them; and a joint whose motion shows at a sample every second does not need a panel every
+two milliseconds.
 """
 
 from __future__ import annotations
 
 from ..signals import SPAN, span
 
-SHOOTING_WINDOW = SPAN
-"""Length of a shooting window [s], or `jaxbacklash.signals.span` where that is longer. Windows of 0.1 s converge from wild
-starts; 0.25 s and longer mostly do not."""
-SCORE_WINDOW = 2.0 * SHOOTING_WINDOW
-"""Length of the windows whose prediction error is quoted [s]; two shooting windows where samples are rare."""
+SHOOTING_WINDOW = 0.025
+"""Length of a shooting window [s]; eight samples where those last longer."""
+SCORE_WINDOW = 2.0 * SPAN
+"""Length of the windows whose prediction error is quoted [s]; 32 samples where those last longer."""
 LONGEST_PANEL = 2.0e-3
 """Longest integration panel [s]; a panel is two Runge-Kutta steps."""
 PANELS = 16
@@ -24,9 +24,9 @@ def score_window(dt: float, said: float | None = None) -> float:
     return 2.0 * span(dt) if said is None else said
 
 
-def shooting_window(dt: float, score: float) -> float:
-    """Length [s] of a shooting window in a score window of ``score`` [s]."""
-    return 0.5 * score if score < 2.0 * span(dt) else span(dt)
+def shooting_window(score: float) -> float:
+    """Length [s] of a shooting window in a score window of ``score`` [s]: at least two make one."""
+    return min(SHOOTING_WINDOW, 0.5 * score)
 
 
 def longest_panel(dt: float) -> float:

@@ -20,13 +20,13 @@ from ..errors import BadInput
 from ..records import Record
 from ..records.force import force_edges, way
 from ..sharing import sharing
-from ..signals import DEGREE, NEGLIGIBLE, choose_intervals, fit_spline, knots, noise_level, noise_of_differences
+from ..signals import DEGREE, NEGLIGIBLE, SPAN, choose_intervals, fit_spline, knots, noise_level, noise_of_differences
 from .chunks import CHUNK
-from .lengths import LONGEST_PANEL, SHOOTING_WINDOW
+from .lengths import LONGEST_PANEL
 
 Array = Any
 LEAST_INTERVALS = 8
-"""Spline intervals that a window of `SHOOTING_WINDOW` or longer has room for at least, a shorter one for its share of them; those
+"""Spline intervals that a window of `SPAN` or longer has room for at least, a shorter one for its share of them; those
 that its input does not need are joined."""
 HELD = 30.0
 """How many times more firmly than by the samples a spline is held to have no corner at a knot that its input does not need."""
@@ -147,7 +147,7 @@ def cut(
         needed = max(choose_intervals(r.t, r.channels[driver], length * dt) for r in records)
         # A step of four keeps the number of compiled shapes small.
         # No fewer than a window shares with the one before.
-        room = max(round(LEAST_INTERVALS * min(length * dt / SHOOTING_WINDOW, 1.0)), DEGREE + 1)
+        room = max(round(LEAST_INTERVALS * min(length * dt / SPAN, 1.0)), DEGREE + 1)
         step = 4 if room >= LEAST_INTERVALS else 2
         intervals = -(-max(needed, room, least) // step) * step
         needed = next(n for n in range(needed, intervals + 1) if intervals % n == 0)
@@ -161,7 +161,7 @@ def cut(
         stacked[key] = np.pad(joined, [(0, total - joined.shape[0])] + [(0, 0)] * (joined.ndim - 1))
     counts = [p["measured"].shape[0] for p in parts]
     noise = tuple(float(p["noise"]) for p in parts)
-    drop = 50.0 / np.mean(noise) * np.array([1.0, SPEED * max(length * dt, SHOOTING_WINDOW)])
+    drop = 50.0 / np.mean(noise) * np.array([1.0, SPEED * max(length * dt, SPAN)])
     starts = np.ascontiguousarray(stacked.pop("starts").T)
     panel = dt / every
     windows = Windows(
