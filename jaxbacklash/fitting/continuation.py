@@ -120,8 +120,10 @@ def continued(
     best = way.best
     if way.height(TIGHTEST) >= way.height(best) - WITHIN_CHANCE:
         best = TIGHTEST
-    at = tied(problem, best)
-    minimum = minimise(at, way.reached.get(best, start), Levenberg(limit=LAST, atol=CLOSELY))
+    at, minimum = tied(problem, best), way.ended.get(best)
+    if minimum is None or not minimum.stats["stalled"]:
+        # What has stalled at corners of dry friction would stall there again.
+        minimum = minimise(at, way.reached.get(best, start), Levenberg(limit=LAST, atol=CLOSELY))
     done = int(minimum.stats["steps"]) < LAST
     return Continued(at, minimum, log_evidence(at, minimum), tuple(way.stops), done, {**way.reached, best: minimum.value})
 
@@ -198,6 +200,7 @@ class _Way:
         self.problem, self.speeds = problem, speeds
         self.stops: list[Stop] = []
         self.reached: dict[float, Unknowns] = {}
+        self.ended: dict[float, Minimum] = {}
 
     def tighten(self, first: float, start: Unknowns) -> None:
         """Fit with ever tighter ties, each from where the last one ended, as long as the evidence does not fall; where it falls
@@ -234,7 +237,7 @@ class _Way:
         self.stops.append(Stop(tie, log_evidence(at, minimum), int(minimum.stats["steps"])))
         if not np.isfinite(self.stops[-1].log_evidence) or self.stops[-1].log_evidence < highest - FALLEN:
             return False
-        self.reached[tie] = minimum.value
+        self.reached[tie], self.ended[tie] = minimum.value, minimum
         return True
 
     @property

@@ -27,7 +27,7 @@ POOR, FAIR = 0.1, 0.5
 """Share of what it promised that a step must keep for the damping to stay, and to come down."""
 LEAST = 1e-4
 """Damping after a step is turned down, at least: less than that hardly changes a step."""
-STALLED, PROGRESS = 12, 20.0
+STALLED, PROGRESS = 8, 20.0
 """A search ends that over so many steps has gained less than so many times what may be left to gain."""
 
 
@@ -108,17 +108,20 @@ class BlockLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
         # Where dry friction makes the cost jagged, a little is promised for ever and next to nothing kept.
         small = small | ((state.fell < least) & (state.gain < PROMISED * least))
         # A promise under heavy damping says little; wait until the damping has come down or nothing helps any more.
-        stalled = (state.steps - state.mark[1] >= STALLED) | (state.damping > 1e11)
-        done = (small & (state.damping < 1.0)) | stalled | (state.steps >= self.limit)
+        done = (small & (state.damping < 1.0)) | _stalled(state) | (state.steps >= self.limit)
         return done & (state.steps > 0), optx.RESULTS.successful
 
     def postprocess(
         self, fn: Any, y: Unknowns, aux: Any, args: Problem, options: Any, state: SearchState, tags: Any, result: Any
     ) -> Any:
         undamped = solve(state.blocks, jnp.asarray(0.0), args.windows.used, _room(args, y.theta))
-        stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps}
+        stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps, "stalled": _stalled(state)}
         told = {"schur": undamped.schur, "score": undamped.score, "promise": undamped.promise}
         return y, aux, stats | told | {"log_determinant": undamped.log_determinant}
+
+
+def _stalled(state: SearchState) -> Array:
+    return (state.steps - state.mark[1] >= STALLED) | (state.damping > 1e11)
 
 
 def _rows(problem: Problem) -> Array:

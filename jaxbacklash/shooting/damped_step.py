@@ -78,9 +78,13 @@ def _added(blocks: Blocks, used: Array) -> Array:
     What rounding makes of its slope would send it anywhere, at any damping, and the misfit of all windows with it.
     """
     own = jnp.diagonal(blocks.diagonal, axis1=1, axis2=2)
-    there = jnp.arange(own.shape[0]) < used
-    usual = jnp.nanmedian(jnp.where(there[:, None], own, jnp.nan), axis=0)
-    return jnp.where((own < DEAD * usual) & there[:, None], usual, 0.0)
+    there = (jnp.arange(own.shape[0]) < used)[:, None]
+    alive = there & (own > 0.0)
+    # The geometric mean, like a median, is not drawn to a few large values, and takes no sorting.
+    usual = jnp.exp(
+        jnp.sum(jnp.where(alive, jnp.log(jnp.where(alive, own, 1.0)), 0.0), axis=0) / jnp.maximum(jnp.sum(alive, axis=0), 1)
+    )
+    return jnp.where((own < DEAD * usual) & there, usual, 0.0)
 
 
 def _solve_between(matrix: Array, right: Array, least: Array, largest: Array) -> Array:

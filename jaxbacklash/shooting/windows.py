@@ -98,14 +98,14 @@ class Layout(eqx.Module):
 
 
 def bucket(count: int) -> int:
-    """Room for ``count`` windows: 512, 2048, 8192, ... (or a little more on odd numbers of cores).
+    """Room for ``count`` windows: 512, 1024, 2048, ... (or a little more on odd numbers of cores).
 
     Chunks that hold no data are skipped, so that room costs little, and a record of another length hardly ever compiles anew.
     """
     together = CHUNK * len(sharing())
     size = -(-LEAST_ROOM // together) * together
     while size < count:
-        size *= 4
+        size *= 2
     return size
 
 
