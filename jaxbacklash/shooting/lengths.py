@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from ..signals import SPAN, span
 
-SHOOTING_WINDOW = 0.025
+SHOOTING_WINDOW = 0.05
 """Length of a shooting window [s]; eight samples where those last longer."""
 SCORE_WINDOW = 2.0 * SPAN
 """Length of the windows whose prediction error is quoted [s]; 32 samples where those last longer."""

@@ -34,6 +34,10 @@ SPEED = 0.2
 """Share of a window over which a jump of the speed where windows join makes the jump of place that counts as much."""
 LEAST_ROOM = 512
 """Windows that the smallest compiled program has room for."""
+SIZES = (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
+"""Samples that a window may have: few sizes, so that records of many rates run in the same compiled program."""
+PARTS = (1, 2, 3, 4, 6, 8, 12, 16)
+"""Panels that the time between two samples may be divided into, few for the same reason."""
 
 
 class Windows(eqx.Module):
@@ -117,7 +121,7 @@ def cut(
     Parameters
     ----------
     records : records with the same channels and sample spacing
-    window : wished length of a window [s]; rounded to whole samples, at least 8
+    window : wished length of a window [s]; the nearest of `SIZES` in samples is taken
     longest_panel : longest integration panel [s]
     least : smallest number of spline intervals a window, where there is a spline
 
@@ -138,8 +142,9 @@ def cut(
                 f"give --resample-rate {lead.rate_hz:g} to bring them to one rate"
             )
     dt = lead.dt
-    length = max(8, round(window / dt))
-    every = max(1, int(np.ceil(dt / longest_panel - 1e-9)))
+    length = min(SIZES, key=lambda size: abs(np.log(size * dt / window)))
+    wanted = int(np.ceil(dt / longest_panel - 1e-9))
+    every = next((size for size in PARTS if size >= wanted), wanted)
     driver = _driver(records)
     intervals = 0
     needed = 0
