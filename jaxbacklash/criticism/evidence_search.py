@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from ..fitting.continuation import SHARP, TIGHTEST
@@ -18,7 +18,7 @@ from .candidates import Candidate, share_of_rest
 from .evidence import demanded, leaves_noise, noise_too_large
 from .fitted_model import FittedModel
 from .model_fitter import ExhaustedError, ModelFitter
-from .moves import add, added, drop, simpler_instead
+from .moves import Neighbour, with_law, with_simpler_law, without_law
 from .screening import net_gain, screen
 from .steps import SearchStep
 
@@ -93,10 +93,13 @@ class EvidenceSearch:
 
     def better_neighbour(self, model: FittedModel) -> FittedModel | None:
         """The best model one move away, None where no move helps: additions first, then fewer laws, then other ones."""
-        for neighbours, least in (
-            (self.with_one_more, self.demand), (self.with_one_fewer, -self.demand), (self.with_another, self.demand),
+        for move, least in (
+            (self.one_law_more, self.demand), (self.one_law_fewer, -self.demand), (self.another_law, self.demand),
         ):  # fmt: skip
-            found = self.best(model, neighbours(model))
+            found: FittedModel | None = None
+            for neighbour in move(model):
+                fitted = self.fitter.fit_model(neighbour.effects, model, neighbour.joint)
+                found = fitted if found is None else self.likelier(model, found, fitted)
             if found is not None and self.evidence(model, found) > least:
                 self._step(model, found)
                 return found
@@ -116,59 +119,55 @@ class EvidenceSearch:
         fall = model.criterion_at(min(model.tie, most)) - other.criterion_at(min(other.tie, most))
         return fall / other.deflation
 
-    def best(self, model: FittedModel, others: Iterable[FittedModel]) -> FittedModel | None:
-        """The likeliest of some models beside the present one, each compared with the best before it."""
-        found: FittedModel | None = None
-        for other in others:
-            if found is None:
-                found = other
-                continue
-            close = abs(self.evidence(found, other)) < SCATTER < self.evidence(model, other) + 2.0 * SCATTER
-            if close and self.slides(found, other):
-                # Corners of dry friction scatter where fits end: each is begun once more from where the other one has ended.
-                other = self.fitter.fit_model(self.fitter.effects(other), found)
-                found = self.fitter.fit_model(self.fitter.effects(found), other)
-            if self.evidence(found, other) > 0.0:
-                found = other
-        return found
+    def likelier(self, model: FittedModel, found: FittedModel, other: FittedModel) -> FittedModel:
+        """The likelier of two neighbours of a model."""
+        close = abs(self.evidence(found, other)) < SCATTER < self.evidence(model, other) + 2.0 * SCATTER
+        if close and self.slides(found, other):
+            # Corners of dry friction scatter where fits end: each is begun once more from where the other one has ended.
+            other = self.fitter.fit_model(self.fitter.effects(other), found, again=True)
+            found = self.fitter.fit_model(self.fitter.effects(found), other, again=True)
+        return other if self.evidence(found, other) > 0.0 else found
 
     def slides(self, *models: FittedModel) -> bool:
         """Whether dry friction is in any of some models."""
         return any(self.fitter.laws[n].slides for model in models for n in model.names)
 
-    def with_one_more(self, model: FittedModel) -> list[FittedModel]:
+    def one_law_more(self, model: FittedModel) -> Iterator[Neighbour]:
         """The model with each of the most promising absent laws."""
-        return self._with_each(model, self.screened(model)) if len(model.names) < MOST_LAWS else []
+        if len(model.names) < MOST_LAWS:
+            yield from self._with_each(model, self.screened(model))
 
-    def with_one_fewer(self, model: FittedModel) -> list[FittedModel]:
+    def one_law_fewer(self, model: FittedModel) -> Iterator[Neighbour]:
         """The model without each of its laws, and with the simpler ones that they contain in their place."""
-        simpler = [other for name in sorted(model.names) for other in simpler_instead(self.fitter, model, name)]
-        return simpler + [drop(self.fitter, model, name) for name in sorted(model.names)]
-
-    def with_another(self, model: FittedModel) -> list[FittedModel]:
-        """The model with each of its laws replaced by the most promising others, and by all promising ones of its family."""
-        found = []
         for name in sorted(model.names):
-            without = drop(self.fitter, model, name)
-            found += self._with_each(without, self.screened(without), self._family(name))
-        return [m for m in found if m.names != model.names]
+            yield from with_simpler_law(self.fitter, model, name)
+        for name in sorted(model.names):
+            yield without_law(self.fitter, model, name)
 
-    def _with_each(self, model: FittedModel, candidates: list[Candidate], family: str = "") -> list[FittedModel]:
+    def another_law(self, model: FittedModel) -> Iterator[Neighbour]:
+        """The model with each of its laws replaced by the most promising others, and by all promising ones of its family."""
+        for name in sorted(model.names):
+            # Fitted when it was looked at whether fewer laws do.
+            without = self.fitter.fitted[model.names - {name}]
+            others = self._with_each(without, self.screened(without), self._family(name))
+            yield from (n for n in others if n.names != model.names)
+
+    def _with_each(self, model: FittedModel, candidates: list[Candidate], family: str = "") -> Iterator[Neighbour]:
         """The model with each of the most promising candidates in turn, and with all that were fitted before; of each family but
         the one named with one candidate.
 
         One that promises clearly less than one that leaves nothing is not fitted.
         """
-        known = [m for c in candidates if (m := added(self.fitter, model, c)) is not None]
-        found: list[FittedModel] = []
+        beside = {c.name: with_law(self.fitter, model, c) for c in candidates}
+        yield from (n for n in beside.values() if n.names in self.fitter.fitted)
         enough = 0.0
-        for candidate in self._promising(model, candidates, family):
+        for candidate in self._promising(model, candidates, beside, family):
             if net_gain(candidate, self.fitter) < CLOSE * enough:
                 break
-            found.append(add(self.fitter, model, candidate))
-            if leaves_noise(found[-1]) and self.evidence(model, found[-1]) > self.demand:
+            yield beside[candidate.name]
+            fitted = self.fitter.fitted[beside[candidate.name].names]
+            if leaves_noise(fitted) and self.evidence(model, fitted) > self.demand:
                 enough = max(enough, net_gain(candidate, self.fitter))
-        return known + found
 
     def screened(self, model: FittedModel) -> list[Candidate]:
         """`screen`, once for each fit."""
@@ -184,9 +183,11 @@ class EvidenceSearch:
         others = [m for m in self.fitter.fitted.values() if m.names != model.names and leaves_noise(m)]
         return {tuple(sorted(m.names)): m for m in others if self.evidence(model, m) > -self.demand}
 
-    def _promising(self, model: FittedModel, candidates: list[Candidate], family: str) -> list[Candidate]:
+    def _promising(
+        self, model: FittedModel, candidates: list[Candidate], beside: dict[str, Neighbour], family: str
+    ) -> list[Candidate]:
         """Candidates not fitted yet that promise a share of what the best does; what has not kept its promise is left out."""
-        known = {c.name: added(self.fitter, model, c) for c in candidates}
+        known = {c.name: self.fitter.fitted.get(beside[c.name].names) for c in candidates}
         asked = [c for c in candidates if (m := known[c.name]) is None or self.evidence(model, m) > self.demand]
         least = max(self.demand, PROMISING * max((net_gain(c, self.fitter) for c in asked), default=0.0))
         new = [c for c in asked if known[c.name] is None and net_gain(c, self.fitter) >= least]

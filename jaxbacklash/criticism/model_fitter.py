@@ -58,16 +58,20 @@ class ModelFitter(ModelBuilder):
         self.before, self.fitted = self.fitted, {}
 
     def fit_model(
-        self, effects: dict[str, AbstractEffect], near: FittedModel | None = None, joint: System | None = None
-    ) -> FittedModel:
-        """The joint with these effects, fitted from their values; the better of this fit and of an earlier one is kept.
+        self, effects: dict[str, AbstractEffect], near: FittedModel | None = None, joint: System | None = None, *,
+        again: bool = False,
+    ) -> FittedModel:  # fmt: skip
+        """The joint with these effects, fitted from their values once for each set of laws.
 
         Parameters
         ----------
         effects : by canonical name, at the values to start from
         near : a fitted model from whose joint, windows and ties to start, or looser ones; None starts from the record
         joint : a system with the joint's values to start from instead
+        again : fit it though it was fitted before; the better of both fits is kept
         """
+        if not again and (known := self.fitted.get(frozenset(effects))) is not None:
+            return known
         if (was := self.before.get(frozenset(effects))) is not None:
             effects, near, joint = self.effects(was), was, None
         begin = joint if joint is not None else self.base if near is None else near.system

@@ -6,11 +6,32 @@ simpler one takes its place. `evidence_search` says which moves are tried; `mode
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+
 from ..mechanics import AbstractEffect, canonical_name
 from ..parameters import with_values
+from ..system import System
 from .candidates import Candidate, rubs
 from .fitted_model import FittedModel
 from .model_fitter import ModelFitter
+
+
+@dataclass(frozen=True)
+class Neighbour:
+    """A model one move away from another, not yet fitted.
+
+    ``effects`` by canonical name, at the values to start from; ``joint``, a system with the joint's values to start from, None
+    for those of the model that it is a neighbour of.
+    """
+
+    effects: dict[str, AbstractEffect]
+    joint: System | None = None
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The names of its laws."""
+        return frozenset(self.effects)
 
 
 def give_way(fitter: ModelFitter, model: FittedModel, name: str) -> frozenset[str]:
@@ -21,36 +42,22 @@ def give_way(fitter: ModelFitter, model: FittedModel, name: str) -> frozenset[st
     return frozenset(contained | rubbing)
 
 
-def add(fitter: ModelFitter, model: FittedModel, candidate: Candidate) -> FittedModel:
-    """The model with one more law, from its predicted values; fitted once for each set of laws."""
+def with_law(fitter: ModelFitter, model: FittedModel, candidate: Candidate) -> Neighbour:
+    """The model with one more law, from its predicted values."""
     gone = give_way(fitter, model, candidate.name)
     effects = {n: e for n, e in fitter.effects(model).items() if n not in gone} | {candidate.name: candidate.effect}
     # A law that remembers was tuned together with the model's own parameters.
-    joint = with_values(model.system, candidate.moved) if candidate.effect.states else model.system
-    return added(fitter, model, candidate) or fitter.fit_model(effects, model, joint)
+    return Neighbour(effects, with_values(model.system, candidate.moved) if candidate.effect.states else None)
 
 
-def added(fitter: ModelFitter, model: FittedModel, candidate: Candidate) -> FittedModel | None:
-    """The model with one more law, if that has been fitted."""
-    return fitter.fitted.get(model.names - give_way(fitter, model, candidate.name) | {candidate.name})
+def without_law(fitter: ModelFitter, model: FittedModel, name: str) -> Neighbour:
+    """The model without one of its laws."""
+    return Neighbour({n: e for n, e in fitter.effects(model).items() if n != name})
 
 
-def drop(fitter: ModelFitter, model: FittedModel, name: str) -> FittedModel:
-    """The model without one of its laws; fitted once for each set of laws."""
-    effects = {n: e for n, e in fitter.effects(model).items() if n != name}
-    return _known(fitter, effects) or fitter.fit_model(effects, model)
-
-
-def simpler_instead(fitter: ModelFitter, model: FittedModel, name: str) -> list[FittedModel]:
+def with_simpler_law(fitter: ModelFitter, model: FittedModel, name: str) -> Iterator[Neighbour]:
     """The model with each simpler law that one of its laws contains or comes near to in that one's place, where it may act."""
-    found = []
     for law in fitter.effects(model)[name].simpler():
         simpler = canonical_name(type(law))
         if simpler in fitter.laws and simpler not in model.names:
-            effects = {n: e for n, e in fitter.effects(model).items() if n != name} | {simpler: law}
-            found.append(_known(fitter, effects) or fitter.fit_model(effects, model))
-    return found
-
-
-def _known(fitter: ModelFitter, effects: dict[str, AbstractEffect]) -> FittedModel | None:
-    return fitter.fitted.get(frozenset(effects))
+            yield Neighbour({n: e for n, e in fitter.effects(model).items() if n != name} | {simpler: law})
