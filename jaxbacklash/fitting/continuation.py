@@ -35,7 +35,7 @@ LOOSEST, TIGHTEST = 1e-4, 100.0
 """Weights of the ties between windows from which on to which a fit goes: the first lets a window's end miss the next one's start
 by two hundred times the noise, with the last the windows are one trajectory."""
 FINER = 10.0
-"""Factor by which the weight of the ties grows from one fit to the next, its root where that was too much."""
+"""Factor by which the weight of the ties grows from one fit to the next."""
 FALLEN = 3.0
 """Fall of the log evidence below its highest from which on tighter ties are not tried: a likelihood of a twentieth."""
 WITHIN_CHANCE = 1.92
@@ -113,19 +113,19 @@ def continued(
     >>> found.tie == TIGHTEST  # nothing is left out  # doctest: +SKIP
     True
     """
-    way = _Way(problem, speeds or {})
-    way.tighten(first, start)
-    if way.best == first:
-        way.loosen(first, way.reached.get(first, start))
-    best = way.best
-    if way.height(TIGHTEST) >= way.height(best) - WITHIN_CHANCE:
-        best = TIGHTEST
+    way, speeds = _Way(first, last=SHARP if speeds else TIGHTEST), speeds or {}
+    while (tie := way.next_tie()) is not None:
+        at = _softened(tied(problem, tie), speeds)
+        how = Levenberg(limit=BETWEEN if tie < SHARP else LAST, atol=ROUGHLY)
+        way.note(tie, at, minimise(at, way.begin(tie, start), how))
+    best = way.likeliest()
     at, minimum = tied(problem, best), way.ended.get(best)
     if minimum is None or not minimum.stats["stalled"]:
         # What has stalled at corners of dry friction would stall there again.
-        minimum = minimise(at, way.reached.get(best, start), Levenberg(limit=LAST, atol=CLOSELY))
+        minimum = minimise(at, way.begin(best, start), Levenberg(limit=LAST, atol=CLOSELY))
+    reached = {**{tie: ended.value for tie, ended in way.ended.items()}, best: minimum.value}
     done = int(minimum.stats["steps"]) < LAST
-    return Continued(at, minimum, log_evidence(at, minimum), tuple(way.stops), done, {**way.reached, best: minimum.value})
+    return Continued(at, minimum, log_evidence(at, minimum), tuple(way.stops), done, reached)
 
 
 def evidence_at(problem: Problem, reached: Mapping[float, Unknowns], tie: float) -> float:
@@ -194,55 +194,59 @@ def in_one_run(problem: Problem, theta: np.ndarray | None = None) -> Continued:
 
 
 class _Way:
-    """The fits on the way: where each ended, by the weight of its ties."""
+    """Which weight of the ties comes next, from how the evidence went with those before.
 
-    def __init__(self, problem: Problem, speeds: Mapping[str, float]) -> None:
-        self.problem, self.speeds = problem, speeds
+    ``stops`` are the fits so far, ``ended`` where those ended that did not fall below the highest evidence.
+    """
+
+    def __init__(self, first: float, last: float) -> None:
+        self.first, self.last = first, last
         self.stops: list[Stop] = []
-        self.reached: dict[float, Unknowns] = {}
         self.ended: dict[float, Minimum] = {}
+        self._tightening = True
 
-    def tighten(self, first: float, start: Unknowns) -> None:
-        """Fit with ever tighter ties, each from where the last one ended, as long as the evidence does not fall; where it falls
-        over a step, a shorter one is tried."""
-        factor = FINER
-        if not self.rises(first, start):
-            return
-        tie, last = first, SHARP if self.speeds else TIGHTEST
-        while tie < last:
-            further = min(tie * factor, last)
-            # Factors of ten end a little beside powers of ten.
-            further = last if further > 0.9 * last else further
-            if any(stop.tie >= 0.9 * further for stop in self.stops):
-                return  # the evidence has fallen there
-            if self.rises(further, self.reached[tie]):
-                tie = further
-            elif factor == FINER:
-                factor = float(np.sqrt(FINER))
-            else:
-                return
+    def next_tie(self) -> float | None:
+        """Ever tighter ties as long as the evidence does not fall; looser ones where the loosest are the likeliest; then none."""
+        if not self.stops:
+            return self.first
+        if self._tightening and (tie := self._tighter()) is not None:
+            return tie
+        self._tightening = False
+        return self._looser()
 
-    def loosen(self, first: float, start: Unknowns) -> None:
-        """Fit with ever looser ties as long as the evidence does not fall."""
-        tie = first / FINER
-        while tie > 0.5 * LOOSEST and self.rises(tie, start):
-            start, tie = self.reached[tie], tie / FINER
+    def _tighter(self) -> float | None:
+        tie = self.stops[-1].tie
+        if tie >= self.last or tie not in self.ended:
+            return None
+        # Factors of ten end a little beside powers of ten.
+        return tie * FINER if tie * FINER < 0.9 * self.last else self.last
 
-    def rises(self, tie: float, unknowns: Unknowns) -> bool:
-        """Fit with these ties, and tell whether the evidence is not below its highest so far."""
-        at = tied(self.problem, tie)
-        how = Levenberg(limit=BETWEEN if tie < SHARP else LAST, atol=ROUGHLY)
-        minimum = minimise(_softened(at, self.speeds), unknowns, how)
-        highest = self.height(self.best) if self.stops else -np.inf
+    def _looser(self) -> float | None:
+        loosest = min(stop.tie for stop in self.stops)
+        tie = loosest / FINER
+        return tie if loosest == self.best and tie > 0.5 * LOOSEST else None
+
+    def begin(self, tie: float, start: Unknowns) -> Unknowns:
+        """Where a fit with these ties begins: where the fit with the nearest ended."""
+        if not self.ended:
+            return start
+        return self.ended[min(self.ended, key=lambda other: abs(np.log(other / tie)))].value
+
+    def note(self, tie: float, at: Problem, minimum: Minimum) -> None:
+        """Note a fit, and whether the evidence is not below its highest so far."""
+        highest = max((stop.log_evidence for stop in self.stops), default=-np.inf)
         self.stops.append(Stop(tie, log_evidence(at, minimum), int(minimum.stats["steps"])))
-        if not np.isfinite(self.stops[-1].log_evidence) or self.stops[-1].log_evidence < highest - FALLEN:
-            return False
-        self.reached[tie], self.ended[tie] = minimum.value, minimum
-        return True
+        if np.isfinite(self.stops[-1].log_evidence) and self.stops[-1].log_evidence >= highest - FALLEN:
+            self.ended[tie] = minimum
+
+    def likeliest(self) -> float:
+        """The likeliest weight of the ties, `TIGHTEST` where that is as likely within chance."""
+        best = self.best
+        return TIGHTEST if self.height(TIGHTEST) >= self.height(best) - WITHIN_CHANCE else best
 
     @property
     def best(self) -> float:
-        """The likeliest weight of the ties so far."""
+        """The weight of the ties with the highest evidence so far."""
         return max(self.stops, key=lambda stop: stop.log_evidence).tie
 
     def height(self, tie: float) -> float:
