@@ -31,9 +31,9 @@ def noise_too_large(model: FittedModel) -> bool:
     return model.tied and model.misfit < 1.0
 
 
-def most_of_noise(model: FittedModel, sigmas: float = SIGMAS) -> float:
+def most_of_noise(model: FittedModel, sigmas: float | None = None) -> float:
     """The largest misfit of a model that noise may leave, see `jaxbacklash.fitting.left_out.most_of_noise`."""
-    return left_out.most_of_noise(model.freedom, sigmas)
+    return left_out.most_of_noise(model.freedom, SIGMAS if sigmas is None else sigmas)
 
 
 def leaves_a_rest(model: FittedModel) -> bool:
