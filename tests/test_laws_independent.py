@@ -216,7 +216,7 @@ def test_no_panel_holds_a_whole_crossing_of_the_play():
         return np.max(np.abs(np.asarray(found)[: first.size] - record.channels["z"][first[:, None] + np.arange(length)]))
 
     windows, layout, _ = prepare(system, [record], 0.2)
-    coarse, as_coarse = cut([record], 0.1)
+    coarse, as_coarse = cut([record], layout.length * layout.dt)
     assert layout.length == as_coarse.length
     assert worst(windows, layout.length) < 3e-6
     assert worst(coarse, layout.length) > 3e-5  # the same steps, at what is enough for a slow link

@@ -125,7 +125,7 @@ def test_a_smooth_motion_is_no_quieter_than_its_file(digits):
 
 
 def test_windows_hold_samples_and_what_the_user_says_stays():
-    assert (score_window(0.002), shooting_window(0.2)) == (0.2, 0.025)
+    assert (score_window(0.002), shooting_window(0.2)) == (0.2, 0.05)
     assert score_window(0.02) == pytest.approx(0.64)
     assert score_window(0.02, 0.3) == 0.3
     assert shooting_window(0.03) == pytest.approx(0.015)

@@ -79,12 +79,16 @@ def _added(blocks: Blocks, used: Array) -> Array:
     """
     own = jnp.diagonal(blocks.diagonal, axis1=1, axis2=2)
     there = (jnp.arange(own.shape[0]) < used)[:, None]
-    alive = there & (own > 0.0)
-    # The geometric mean, like a median, is not drawn to a few large values, and takes no sorting.
-    usual = jnp.exp(
-        jnp.sum(jnp.where(alive, jnp.log(jnp.where(alive, own, 1.0)), 0.0), axis=0) / jnp.maximum(jnp.sum(alive, axis=0), 1)
-    )
+    # Geometric means, like medians, are not drawn to a few large values, and take no sorting; the second leaves out what is dead.
+    usual = _geometric_mean(own, there & (own > 0.0))
+    usual = _geometric_mean(own, there & (own > DEAD * usual))
     return jnp.where((own < DEAD * usual) & there, usual, 0.0)
+
+
+def _geometric_mean(values: Array, where: Array) -> Array:
+    """Geometric mean (B,) of positive values (W, B) over the windows, as far as they are in ``where``."""
+    logarithms = jnp.where(where, jnp.log(jnp.where(where, values, 1.0)), 0.0)
+    return jnp.exp(jnp.sum(logarithms, axis=0) / jnp.maximum(jnp.sum(where, axis=0), 1))
 
 
 def _solve_between(matrix: Array, right: Array, least: Array, largest: Array) -> Array:
