@@ -11,7 +11,7 @@ class SensorDelay(AbstractEffect):
 
     tau: Scalar = param(unit="s", null=0.0, scale=1e-3)
 
-    def lag(self) -> Scalar:
+    def lag(self, t: Scalar) -> Scalar:
         return self.tau
 
 
@@ -23,7 +23,7 @@ class SensorGain(AbstractEffect):
 
     g: Scalar = param(unit="1", null=1.0, lower=0.5, upper=2.0, scale=0.01)
 
-    def observe(self, value: Scalar) -> Scalar:
+    def observe(self, value: Scalar, state: tuple[Scalar, ...] = ()) -> Scalar:
         return self.g * value
 
 
@@ -32,5 +32,5 @@ class SensorOffset(AbstractEffect):
 
     z_s: Scalar = param(unit="rad", null=0.0, scale=1e-3)
 
-    def observe(self, value: Scalar) -> Scalar:
+    def observe(self, value: Scalar, state: tuple[Scalar, ...] = ()) -> Scalar:
         return value + self.z_s

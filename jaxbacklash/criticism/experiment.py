@@ -140,11 +140,13 @@ def measured_twin(model: System, builder: ModelBuilder, amplitude: float, freque
     drive = SteppedSine(np.array([0.0, amplitude]), np.full(2, frequency), SECONDS, as_force=forced)
     begin = 0.95 * SECONDS
     path = simulate(model, drive, duration=SECONDS, rate=record.rate_hz, t0=begin)
-    lag = model.lag()
+    times = np.asarray(path.t) - begin
+    lag = model.lag(times)
     # A channel that lags shows the motion under an equally late drive, which has gone on meanwhile.
-    seen = jax.vmap(drive.signal)(path.t + (0.0 if lag is None else lag))
+    late = np.broadcast_to(0.0 if lag is None else np.asarray(lag), times.shape)
+    seen = jax.vmap(drive.signal)(path.t + late)
     channels = {
         "F" if forced else "x": np.asarray(seen) + builder.layout.input_noise[0] * rng.standard_normal(path.t.size),
         record.observed_name: np.asarray(path.observed) + builder.layout.noise[0] * rng.standard_normal(path.t.size),
     }
-    return Record(np.asarray(path.t) - begin, channels, "the twin of an experiment", confirmed=frozenset({"t", "x", "y", "z"}))
+    return Record(times + late - late[0], channels, "the twin of an experiment", confirmed=frozenset({"t", "x", "y", "z"}))

@@ -15,7 +15,7 @@ class GapDrift(AbstractEffect):
 
     r: Scalar = param(unit="1/s", null=0.0, scale=1e-3)
 
-    def reshape(self, play: Play, t: Scalar) -> Play:
+    def reshape(self, play: Play, t: Scalar, x: Scalar) -> Play:
         return Play(play.backlash * (1.0 + self.r * t), play.centre)
 
 

@@ -58,5 +58,5 @@ class AsymmetricGap(AbstractEffect):
 
     z0: Scalar = param(unit="rad", null=0.0, scale=1e-3)
 
-    def reshape(self, play: Play, t: Scalar) -> Play:
+    def reshape(self, play: Play, t: Scalar, x: Scalar) -> Play:
         return Play(play.backlash, play.centre + self.z0)
