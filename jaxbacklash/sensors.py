@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from .mechanics import AbstractEffect
+from typing import ClassVar
+
+import jax.numpy as jnp
+
+from .mechanics import AbstractEffect, Instant
 from .parameters import Scalar, param
 
 
@@ -34,3 +38,46 @@ class SensorOffset(AbstractEffect):
 
     def observe(self, value: Scalar, state: tuple[Scalar, ...] = ()) -> Scalar:
         return value + self.z_s
+
+
+QUICKEST = 1e-3
+"""Time constant [s] below which what a low-pass remembers follows no quicker: fixed steps must be able to take it."""
+
+
+class SensorFilter(AbstractEffect):
+    r"""The measured channel is behind a low-pass of first order, :math:`\tau_f \dot z_\mathrm{meas} = z - z_\mathrm{meas}`.
+
+    The state is the rate at which the channel moves, v, so that :math:`z_\mathrm{meas} = z - \tau_f v` vanishes with the time
+    constant :math:`\tau_f`; the corner is at :math:`1 / (2 \pi \tau_f)` hertz.
+    """
+
+    alike: ClassVar[dict[str, str]] = {
+        "sensor_delay": "motion of several times the frequency: a filter also makes it smaller, a delay does not",
+        "sensor_gain": "motion of several frequencies: a gain makes all of them smaller by one factor",
+    }
+
+    tau_f: Scalar = param(unit="s", null=0.0, lower=0.0, scale=1e-3)
+    states: ClassVar[tuple[str, ...]] = ("v",)
+
+    def rate(self, now: Instant) -> tuple[Scalar, ...]:
+        return ((now.dseen - now.state[0]) / jnp.maximum(self.tau_f, QUICKEST),)
+
+    def start(self, now: Instant) -> tuple[Scalar, ...]:
+        return (now.dseen,)
+
+    def observe(self, value: Scalar, state: tuple[Scalar, ...] = ()) -> Scalar:
+        return value - self.tau_f * state[0]
+
+
+class ClockDrift(AbstractEffect):
+    r"""The clock of the measured channel runs :math:`1 + r` times as fast as that of the input (two loggers).
+
+    What it stamps with t was there at :math:`t / (1 + r)`: :math:`z_\mathrm{meas}(t) = z(t / (1 + r))`.
+    """
+
+    alike: ClassVar[dict[str, str]] = {"sensor_delay": "a longer record: the lag of another clock grows, a delay stays"}
+
+    r: Scalar = param(unit="1", null=0.0, lower=-1e-3, upper=1e-3, scale=1e-5)
+
+    def lag(self, t: Scalar) -> Scalar:
+        return t * (self.r / (1.0 + self.r))
