@@ -52,7 +52,9 @@ class View:
 
 
 VIEWS = {
-    "asymmetric_stiffness": View(swing=1.4), "bouc_wen": View("dz"), "contact_damping": View("dz"),
+    "asymmetric_stiffness": View(swing=1.4), "bouc_wen": View("dz"), "clock_drift": View("t", 1.2), "contact_damping": View("dz"),
+    "contact_exponent": View(swing=1.8), "damping_drift": View("t"), "disturbance": View("t"), "friction_drift": View("t"),
+    "load_friction": View("dz", 1.4), "relaxation": View("dz"), "sensor_filter": View("dz", 1.2), "transmission_error": View("y"),
     "coulomb_ground": View("dy", 4.0, 3.0), "coulomb_joint": View("dz"), "cubic_stiffness": View(swing=1.8), "dahl": View("dz"),
     "flexible_link": View("y", 4.0, 1.0), "gap_drift": View("t"),
     "gravity": View("y", 4.0), "hunt_crossley": View("dz", 1.4), "linear_gravity": View("y", 4.0),
@@ -98,8 +100,8 @@ def measured(system: jb.System) -> tuple[jb.Trajectory, jb.Record]:
     """The motion of the joint under the demo's base motion, and what encoders would make of it."""
     motion = jb.simulate(system, jb.measured_base(jb.demo_records()[0]), duration=SECONDS)
     t, x, z = (np.asarray(row) for row in (motion.t, motion.x, motion.observed))
-    if (lag := system.lag()) is not None:
-        z = CubicSpline(t, z)(np.maximum(t - float(lag), t[0]))
+    if (lag := system.lag(t)) is not None:
+        z = CubicSpline(t, z)(np.maximum(t - np.asarray(lag), t[0]))
     rng = np.random.default_rng(0)
     channels = {name: row + NOISE * rng.standard_normal(t.size) for name, row in (("x", x), ("z", z))}
     return motion, jb.Record(t, channels, confirmed=frozenset({"t", "x", "z"}))
@@ -119,8 +121,8 @@ def draw_restoring(ax: Any, system: jb.System, law: jb.AbstractEffect, view: Vie
     for of, look in ((jb.base_motion_joint(**JOINT), {"color": GAP, "lw": 2.6}), (system, {"color": MODEL, "lw": 1.3})):
         torque = held(of, t, angle, speed, ground)
         over = np.asarray(of.observe(jnp.asarray(angle)))
-        if (lag := of.lag()) is not None:
-            over = amplitude * np.sin(omega * (t - float(lag)))
+        if (lag := of.lag(t)) is not None:
+            over = amplitude * np.sin(omega * (t - np.asarray(lag)))
         for number, rows in enumerate(cycles):
             label = None if number else "with it" if of is system else "without"
             ax.plot(np.degrees(over)[rows], torque[rows], label=label, **look)
@@ -158,7 +160,8 @@ def draw_missing(ax: Any, true: jb.System, fitted: jb.System, motion: jb.Traject
     """The torque that the fitted model misses along the motion, as dots over what it depends on."""
     t, x, y, dy = (np.asarray(row) for row in (motion.t, motion.x, motion.y, motion.dy))
     dx = CubicSpline(t, x)(t, 1)
-    seen = np.asarray(motion.observed) if true.lag() is None else CubicSpline(t, y - x)(np.maximum(t - float(true.lag()), 0.0))
+    lag = true.lag(t)
+    seen = np.asarray(motion.observed) if lag is None else CubicSpline(t, y - x)(np.maximum(t - np.asarray(lag), 0.0))
     exact = JOINT["inertia"] * CubicSpline(t, dy)(t, 1)
     model = along(fitted, t, x + seen, dx + CubicSpline(t, seen)(t, 1), x, dx).torque
     over = {"z": np.degrees(seen), "y": np.degrees(y), "dz": dy - dx, "dy": dy, "t": t}[view.over]
