@@ -82,6 +82,21 @@ class Instant:
         return replace(self, state=state)
 
 
+@dataclass(frozen=True)
+class Wave:
+    """A law that is a sine of a coordinate, by the names of its parameters.
+
+    Attributes: ``strength`` that the sine is multiplied with; ``phase``; ``frequency`` with which the coordinate is multiplied,
+    None where that is one; ``over``, the coordinate: ``"t"``, ``"y"`` or ``"x"``. Frequency and phase are read off the spectrum
+    of the torque that is missing over that coordinate.
+    """
+
+    strength: str
+    phase: str
+    frequency: str | None
+    over: str
+
+
 class AbstractEffect(eqx.Module):
     """A physical effect: a law with parameters, neutral in everything it does not override.
 
@@ -89,11 +104,13 @@ class AbstractEffect(eqx.Module):
     remembers; ``port`` where the torque acts, ``"joint"`` (between link and base, so it is part of the transmitted torque) or
     ``"ground"``; ``family`` a name shared by laws that data often cannot tell apart; ``catalogued`` False keeps a law out of the
     search for missing effects; ``slides`` True for dry friction, whose torque is ``dry`` against the direction of sliding at its
-    port; ``absorbs`` names of simpler laws that this one contains, so that it takes their place instead of standing beside them
-    (parameters of one name are then the same); ``yields`` parameters that the presence of another effect makes superfluous, and
-    that effect's name: held beside it; ``motions`` of a link for which the law makes sense, ``"turning"`` and ``"sliding"``;
-    ``joints`` in which it does something that the joint does not do already, ``"play"``, ``"spring"`` and ``"free"``; ``alike``
-    names of laws for which it is taken, or they for it, each with what a record must hold to tell the two.
+    port; ``beside`` True for friction in the joint that stands beside another law of it, where else there is one; ``absorbs``
+    names of simpler laws that this one contains, so that it takes their place instead of standing beside them (parameters of one
+    name are then the same); ``yields`` parameters that the presence of another effect makes superfluous, and that effect's name:
+    held beside it; ``motions`` of a link for which the law makes sense, ``"turning"`` and ``"sliding"``; ``joints`` in which it
+    does something that the joint does not do already, ``"play"``, ``"spring"`` and ``"free"``; ``alike`` names of laws for which
+    it is taken, or they for it, each with what a record must hold to tell the two; ``wave`` for a law that is a sine of a
+    coordinate.
     """
 
     states: ClassVar[tuple[str, ...]] = ()
@@ -102,11 +119,13 @@ class AbstractEffect(eqx.Module):
     family: ClassVar[str | None] = None
     catalogued: ClassVar[bool] = True
     slides: ClassVar[bool] = False
+    beside: ClassVar[bool] = False
     absorbs: ClassVar[tuple[str, ...]] = ()
     yields: ClassVar[dict[str, str]] = {}
     motions: ClassVar[tuple[str, ...]] = ("turning", "sliding")
     joints: ClassVar[tuple[str, ...]] = ("play", "spring", "free")
     alike: ClassVar[dict[str, str]] = {}
+    wave: ClassVar[Wave | None] = None
 
     @classmethod
     def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
@@ -128,6 +147,10 @@ class AbstractEffect(eqx.Module):
         own = {f.name: getattr(self, f.name) for f in dataclasses.fields(self) if "spec" in f.metadata}
         laws = [catalogue()[name] for name in self.absorbs]
         return [law(**{f.name: own[f.name] for f in dataclasses.fields(law) if f.name in own}) for law in laws]
+
+    def forms(self) -> list[AbstractEffect]:
+        """The same law in its other forms, an option set or a shape held, each at the values that are nearest to this one's."""
+        return []
 
     def scaled(self, factor: float) -> AbstractEffect:
         """The same law ``factor`` times as strong: along a given motion it exerts ``factor`` times the torque."""

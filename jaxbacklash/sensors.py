@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import jax.numpy as jnp
 
+from .effects.scales import natural_frequency
 from .mechanics import AbstractEffect, Instant
 from .parameters import Scalar, param
 
@@ -58,6 +59,13 @@ class SensorFilter(AbstractEffect):
 
     tau_f: Scalar = param(unit="s", null=0.0, lower=0.0, scale=1e-3)
     states: ClassVar[tuple[str, ...]] = ("v",)
+
+    @classmethod
+    def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
+        return [cls(share / natural_frequency(system)) for share in (0.1, 0.2, 0.4, 0.8)]
+
+    def simpler(self) -> list[AbstractEffect]:
+        return [SensorDelay(self.tau_f)]
 
     def rate(self, now: Instant) -> tuple[Scalar, ...]:
         return ((now.dseen - now.state[0]) / jnp.maximum(self.tau_f, QUICKEST),)

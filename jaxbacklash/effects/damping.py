@@ -33,6 +33,9 @@ class ContactDamping(AbstractEffect):
     def torque(self, now: Instant) -> Scalar:
         return pushing(-self.cc * now.contact * now.dz, now, self.pulls)
 
+    def forms(self) -> list[AbstractEffect]:
+        return [ContactDamping(self.cc, 1.0 - self.pulls)]
+
     def kink(self, now: Instant, ddz: Scalar) -> tuple[Scalar, Scalar]:
         k = now.stiffness * now.drifted
         lets_go = now.contact * (self.pulls < 0.5)
@@ -52,6 +55,9 @@ class HuntCrossley(AbstractEffect):
 
     def torque(self, now: Instant) -> Scalar:
         return pushing(-self.chi * jnp.abs(now.deflection) * now.dz, now, self.pulls)
+
+    def forms(self) -> list[AbstractEffect]:
+        return [HuntCrossley(self.chi, 1.0 - self.pulls)]
 
     def kink(self, now: Instant, ddz: Scalar) -> tuple[Scalar, Scalar]:
         outwards, lets_go = self.chi * jnp.sign(now.deflection), now.contact * (self.pulls < 0.5)

@@ -101,6 +101,7 @@ class LoadFriction(AbstractEffect):
     mu: Scalar = param(unit="1", null=0.0, lower=0.0, upper=1.0, scale=0.1)
     width: Scalar = param(unit="rad/s", default=1e-3, lower=0.0, fixed=True, label="regularisation of the sign")
     slides: ClassVar[bool] = True
+    beside: ClassVar[bool] = True
     joints: ClassVar[tuple[str, ...]] = ("play", "spring")
 
     def dry(self, now: Instant) -> Scalar:

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 import numpy as np
 
-from ..mechanics import AbstractEffect, Instant
+from ..mechanics import AbstractEffect, Instant, Wave
 from ..parameters import Scalar, param
 from .scales import LABORATORY, natural_frequency, orders
 
@@ -27,10 +27,15 @@ class Gravity(AbstractEffect):
         "gap_spring": "a motion of the base and the link together, in which a spring across the joint does not bend",
     }
 
+    wave: ClassVar[Wave | None] = Wave("G", "phi0", None, "y")
+
     G: Scalar = param(unit="N m", null=0.0, scale=10.0)
     phi0: Scalar = param(unit="rad", usual=0.0, scale=0.1)
     port: ClassVar[str] = "ground"
     motions: ClassVar[tuple[str, ...]] = ("turning",)
+
+    def forms(self) -> list[AbstractEffect]:
+        return [Gravity(self.G * np.cos(self.phi0)) if float(self.phi0) else Gravity(self.G, 0.01)]
 
     def torque(self, now: Instant) -> Scalar:
         return self.G * jnp.sin(now.y + self.phi0)
@@ -69,6 +74,7 @@ class TorqueRipple(AbstractEffect):
     N: Scalar = param(unit="1", default=20.0, lower=LEAST_ORDER, scale=1.0)
     phi: Scalar = param(unit="1", default=0.0, scale=0.1)
     port: ClassVar[str] = "ground"
+    wave: ClassVar[Wave | None] = Wave("A", "phi", "N", "y")
 
     @classmethod
     def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
@@ -89,6 +95,7 @@ class Disturbance(AbstractEffect):
     omega: Scalar = param(unit="1/s", default=LABORATORY, lower=0.0, scale=1.0, label="angular frequency")
     phi: Scalar = param(unit="1", default=0.0, scale=0.1)
     port: ClassVar[str] = "ground"
+    wave: ClassVar[Wave | None] = Wave("A", "phi", "omega", "t")
 
     @classmethod
     def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:

@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 import numpy as np
 
-from ..mechanics import AbstractEffect, Instant, Play
+from ..mechanics import AbstractEffect, Instant, Play, Wave
 from ..parameters import Scalar, param
 from .scales import orders, pressed
 
@@ -97,6 +97,7 @@ class TransmissionError(AbstractEffect):
         "asymmetric_gap": "a base that turns through a whole period of the error",
     }
     joints: ClassVar[tuple[str, ...]] = ("play",)
+    wave: ClassVar[Wave | None] = Wave("e", "psi", "M", "x")
 
     e: Scalar = param(unit="rad", null=0.0, scale=1e-3)
     M: Scalar = param(unit="1", default=20.0, lower=1.0, scale=1.0, label="periods in a turn")

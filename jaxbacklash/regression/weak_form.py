@@ -7,13 +7,14 @@ It is fast and never gets lost, but noise in the motion biases it: it proposes s
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from scipy import linalg
 
 from ..mechanics import AbstractEffect, canonical_name
-from ..parameters import ravel, specs
+from ..parameters import free_specs, ravel, specs
 from ..records import Record
 from ..system import System
 from .along_motion import motion, own_torques, torques
@@ -34,6 +35,7 @@ class WeakForm(Averaged):
         self.motion = motion(record)
         self.blind = record.kind == "transmitted"  # the link is not seen, so there is nothing to regress on
         self._columns: dict[str, tuple[np.ndarray, np.ndarray]] = {}
+        self._kept: dict[str, Any] = {}
 
     def missing(self, system: System, free: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
         """Missing torque under the bump (R,), and how it falls with each free parameter of the model (R, q)."""
@@ -70,8 +72,17 @@ class WeakForm(Averaged):
         """
         if len(variants) <= keep:
             return variants
-        fall = self._correlations(system, free, variants)
-        return [variants[k] for k in np.argsort(-fall)[:keep]]
+        share = self._correlations(system, free, variants) ** 2
+        rows = self.acceleration.size
+        # A shape that has one more free parameter than another must bring as much more as chance would.
+        fall = share * (rows - ORDER) - np.log(rows) * np.array([len(free_specs(v)) for v in variants])
+        return [variants[k] for k in np.argsort(-fall, kind="stable")[:keep]]
+
+    def kept(self, name: str, make: Callable[[], Any]) -> Any:
+        """What was made for a law before, or is now: rows that do not go with the model."""
+        if name not in self._kept:
+            self._kept[name] = make()
+        return self._kept[name]
 
     def evidence(self, system: System, free: tuple[str, ...], variants: list[AbstractEffect]) -> float:
         """Fall of the sum of squares, in units of the rows' own variance, by the likeliest shape of a law: near 1 by chance."""
