@@ -18,7 +18,7 @@ from .candidates import Candidate, share_of_rest
 from .evidence import demanded, leaves_noise, noise_too_large
 from .fitted_model import FittedModel
 from .model_fitter import ExhaustedError, ModelFitter
-from .moves import add, added, drop, simpler_instead
+from .moves import add, added, drop, in_other_forms, simpler_instead
 from .screening import net_gain, screen
 from .steps import SearchStep
 
@@ -66,7 +66,7 @@ class EvidenceSearch:
             model = self.path[-1].model
         model = self.clear(model)
         self._note_ranking()
-        model = self.fitter.sharpened(model)
+        model = in_other_forms(self.fitter, self.fitter.sharpened(model), sorted(model.names))
         self.path[-1] = replace(self.path[-1], model=model)
         if noise_too_large(model) and (factor := self.fitter.too_loud(model)) != 1.0:
             self.fitter.quieter(factor)

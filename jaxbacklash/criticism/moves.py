@@ -6,6 +6,8 @@ simpler one takes its place. `evidence_search` says which moves are tried; `mode
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from ..mechanics import AbstractEffect, canonical_name
 from ..parameters import with_values
 from .candidates import Candidate, rubs
@@ -27,7 +29,16 @@ def add(fitter: ModelFitter, model: FittedModel, candidate: Candidate) -> Fitted
     effects = {n: e for n, e in fitter.effects(model).items() if n not in gone} | {candidate.name: candidate.effect}
     # A law that remembers was tuned together with the model's own parameters.
     joint = with_values(model.system, candidate.moved) if candidate.effect.states else model.system
-    return added(fitter, model, candidate) or fitter.fit_model(effects, model, joint)
+    known = added(fitter, model, candidate)
+    return known or in_other_forms(fitter, fitter.fit_model(effects, model, joint), [candidate.name])
+
+
+def in_other_forms(fitter: ModelFitter, model: FittedModel, names: Iterable[str]) -> FittedModel:
+    """The best of a model and of what it is with some of its laws in their other forms, one at a time: the same laws by name."""
+    for name in names:
+        for form in fitter.effects(model)[name].forms():
+            model = fitter.fit_model({**fitter.effects(model), name: form}, model)
+    return model
 
 
 def added(fitter: ModelFitter, model: FittedModel, candidate: Candidate) -> FittedModel | None:
