@@ -7,7 +7,7 @@ parameters counts for both.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import jax
@@ -17,6 +17,7 @@ from ..errors import BadInput
 from ..excitation import SteppedSine
 from ..fitting.score import score
 from ..fitting.setup import first_guess
+from ..mechanics import told_apart
 from ..records import Record
 from ..simulation import measured_base, simulate
 from ..system import System
@@ -65,16 +66,25 @@ class Experiment:
 
     def __str__(self) -> str:
         best, kept, rival = self.best, " + ".join(self.kept), " + ".join(self.rival)
+        beside = needed(self.kept, self.rival)
         if not self.parts:
             return (
                 f"No sine within what this rig has done here separates {rival} from {kept} in {self.seconds:g} s: "
                 f"at best {rival} would miss by {best.misfit:.3f} times what {kept} does."
-            )
+            ) + beside
         return (
             f"To tell {rival} from {kept}: let a sine of {best.frequency:.3g} Hz grow from rest to {best.amplitude:.3g} "
             f"{self.unit} in {self.drive} and hold it for {self.seconds:g} s; {rival} would then miss by {best.misfit:.3g} times "
             f"what {kept} does."
-        )
+        ) + beside
+
+
+def needed(kept: Iterable[str], rival: Iterable[str]) -> str:
+    """What a record must hold to tell two sets of effects apart, as far as the laws say so: sentences, each after a space."""
+    kept, rival = set(kept), set(rival)
+    both = [(a, b) for a in sorted(kept - rival) for b in sorted(rival - kept)]
+    pairs = [(a, b, apart) for a, b in both if (apart := told_apart(a, b)) is not None]
+    return "".join(f" To tell {b} from {a} a record needs {apart}." for a, b, apart in pairs)
 
 
 def separate(builder: ModelBuilder, kept: FittedModel, rival: FittedModel, *, translational: bool = False) -> Experiment | None:
