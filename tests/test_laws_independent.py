@@ -229,3 +229,40 @@ def test_no_panel_holds_a_whole_crossing_of_the_play():
     assert layout.length == as_coarse.length
     assert worst(windows, layout.length) < 3e-6
     assert worst(coarse, layout.length) > 3e-5  # the same steps, at what is enough for a slow link
+
+
+def shown_error(effects, names, rate=500.0, duration=12.0):
+    """Error (S, M) of what a fit's windows of 0.2 s show of a record without noise, begun at the true states [rad]."""
+    excitation = MOTIONS["multisine"]()
+    made = simulate_truth(RIG, effects, excitation, rate, duration)
+    record = Record(made["t"], {"x": made["x"], "z": made["z_seen"]})
+    system = base_motion_joint(RIG.inertia, RIG.backlash, RIG.stiffness, RIG.damping)
+    system = system.with_effects(*(LAWS[name] for name in names))
+    windows, layout, _ = prepare(system, [record], 0.2)
+    first = layout.length * np.arange((record.samples - 1) // layout.length)
+    times = np.maximum(np.asarray(system.passed(made["t"][first], 0.0)[0]), 0.0)
+    states, _ = kernel.run(start_of(excitation), times, 2e-5, pack(RIG, effects), *pieces_of(excitation, times[-1]), _GRID)
+    problem = make_problem(system, windows, ("backlash",))
+    starts = np.zeros((len(system.state_names), np.shape(windows.t0)[0]))
+    starts[:2, : first.size] = states[:, 0], states[:, 1]
+    if "sensor_filter" in names:
+        behind = states[:, 0] - excitation.base.x(times) - states[:, 8]
+        starts[2, : first.size] = behind / float(LAWS["sensor_filter"].tau_f)
+    found = predictions(problem, Unknowns(np.zeros(1), jnp.asarray(starts), jnp.asarray(windows.coefficients))).motion
+    error = np.abs(np.asarray(found)[: first.size] - made["z_seen"][first[:, None] + np.arange(layout.length)])
+    return error[1:]  # what lags shows nothing new at first
+
+
+def pieces_of(excitation, duration):
+    return _pieces(excitation.base, duration), _pieces(excitation.force, duration)
+
+
+@pytest.mark.parametrize("name", ["clock_drift", "sensor_filter", "sensor_delay"])
+def test_what_the_measuring_chain_does_follows_the_generator(name):
+    """Alone, and beside dry friction that drifts and a disturbance, which go by the clock of the input."""
+    values_of = {n: {k: float(v) for k, v in values(LAWS[n]).items() if k != "width"} for n in LAWS if n != "learned_torque"}
+    for beside in ((), ("coulomb_joint", "friction_drift", "disturbance")):
+        names = (name, *beside)
+        error = shown_error({n: values_of[n] for n in names}, names)
+        assert np.median(error) < 1e-7
+        assert np.quantile(error, 0.99) < 3e-6
