@@ -47,6 +47,7 @@ def read_off(
     weight = own_torques([unit], system, form.motion)[0] / scale
     if wave.frequency is None:
         weight = np.ones_like(weight)
+    form = form.quick if wave.over == "t" else form
     over = np.asarray(getattr(form.motion, wave.over))
 
     def pair(frequency: float) -> np.ndarray:
@@ -56,6 +57,10 @@ def read_off(
 
     left, by = form.missing(system, free)
     rest, frequency, sizes = left - by @ np.linalg.lstsq(by, left, rcond=None)[0], 1.0, np.zeros(2)
+    spec, step = fields.get(wave.frequency or ""), 0.0
+    if spec is not None and wave.over == "t":
+        lines, step = _lines(form, rest)
+        frequency = max(lines, key=lambda f: _fall(pair(f), rest))
     for _ in range(rounds):
         white = whitener(rest)
         basis = np.linalg.qr(white(by))[0]
@@ -64,14 +69,12 @@ def read_off(
             rows = white(rows)
             return np.asarray(rows - basis @ (basis.T @ rows))
 
-        if wave.frequency is not None:
+        if spec is not None:
             seen = own(left)
-            if wave.over == "t":
-                begin, step = _of_time(form, seen)
-            else:
-                known = form.kept(canonical_name(law), lambda: _over_angle(pair, over, fields[wave.frequency], finer, most))
-                begin, step = _of_angle(known, seen, own)
-            frequency = _sharpened(lambda f, seen=seen, own=own: _fall(own(pair(f)), seen), begin, step, fields[wave.frequency])
+            if wave.over != "t":
+                known = form.kept(canonical_name(law), lambda: _over_angle(pair, over, spec, finer, most))
+                frequency, step = _of_angle(known, seen, own)
+            frequency = _sharpened(lambda f, seen=seen, own=own: _fall(own(pair(f)), seen), frequency, step, spec)
         design = np.column_stack([by, pair(frequency)])
         found = np.linalg.lstsq(white(design), white(left), rcond=None)[0]
         rest, sizes = left - design @ found, found[-2:]
@@ -99,9 +102,23 @@ def highest_line(form: WeakForm, rest: np.ndarray, *, periods: int = 3, passed: 
     return float(hertz[np.argmax(np.where(known, spectrum, -1.0))]), float(hertz[1])
 
 
-def _of_time(form: WeakForm, seen: np.ndarray) -> tuple[float, float]:
-    hertz, step = highest_line(form, seen)
-    return 2.0 * np.pi * hertz, 2.0 * np.pi * step
+def _lines(
+    form: WeakForm, rest: np.ndarray, *, count: int = 4, beside: int = 60, passed: float = 0.05
+) -> tuple[list[float], float]:
+    """Angular frequencies of the highest lines over time in rows (R,), and the step of frequency [rad/s].
+
+    The highest as they are, and those that stand furthest above what is ``beside`` them, so many steps on either side: what
+    another law leaves is high and wide. A line hides from a filter that whitens rows which hold it.
+    """
+    size = 4 * rest.size
+    spectrum = np.abs(np.fft.rfft(rest * np.hanning(rest.size), size)) ** 2
+    hertz = np.fft.rfftfreq(size, form.spacing)
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(spectrum, beside, mode="reflect"), 2 * beside + 1)
+    known = (hertz >= 3.0 / (rest.size * form.spacing)) & (form.passes(hertz) > passed)
+    top = (spectrum > np.roll(spectrum, 1)) & (spectrum >= np.roll(spectrum, -1)) & known
+    heights = spectrum, spectrum / np.maximum(np.median(around, axis=1), 1e-300)
+    best = {int(k) for height in heights for k in np.argsort(np.where(top, -height, np.inf))[:count]}
+    return [2.0 * np.pi * float(hertz[k]) for k in sorted(best)], 2.0 * np.pi * float(hertz[1])
 
 
 def _over_angle(pair: Pair, over: np.ndarray, spec: Spec, finer: int, most: int) -> tuple[np.ndarray, np.ndarray]:
