@@ -35,7 +35,8 @@ def along(system: System, t: Any, y: Any, dy: Any, x: Any, dx: Any, force: Any =
     rows = [np.asarray(row, float) for row in np.broadcast_arrays(t, y, dy, x, dx, force)]
     size, (t, y, dy, x, dx, _) = rows[0].size, rows
     *seen, torque, joint = (np.asarray(row)[:size] for row in _along(system, tuple(padded(row) for row in rows)))
-    now = Instant(t, y, dy, x, dx, **dict(zip(SEEN[5:], seen)))
+    told: dict[str, Any] = dict(zip(SEEN[5:], seen))
+    now = Instant(t, y, dy, x, dx, **told)
     return Pointwise(now, torque, joint)
 
 

@@ -8,6 +8,7 @@ parabola of that share: its lowest point says what the law brings, and at what s
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import equinox as eqx
 import numpy as np
@@ -57,14 +58,14 @@ class ForceTest:
         along = self.along.y - self.along.x if self.system.observed == "z" else self.along.y
         shown = [np.asarray(shape.observe(along, own_states(shape, self.system, self.along))) for shape in shapes]
         shifts = [np.interp(at_samples, self.along.t, s - along) for s in shown]
-        falls = [self._lowest(lambda share, shift=shift: self._shown(share * shift))[0] for shift in shifts]
+        falls = [self._lowest(partial(self._shown, shift))[0] for shift in shifts]
         best = max(range(len(shapes)), key=lambda k: falls[k])
         return falls[best], shapes[best]
 
     def fall(self, torque: np.ndarray) -> tuple[float, float]:
         """What a torque (N,) [N m] along the motion brings at its best size, and that size; nothing where it is below zero."""
         torque = np.interp(self.edges, self.along.t, torque)
-        return self._lowest(lambda share: self._answer(share * torque))
+        return self._lowest(partial(self._answer, torque))
 
     def _lowest(self, rise: Callable[[float], float]) -> tuple[float, float]:
         once = rise(SHARE)
@@ -75,11 +76,11 @@ class ForceTest:
             return 0.0, 1.0
         return slope**2 / curvature, -slope / curvature
 
-    def _answer(self, torque: np.ndarray) -> float:
-        problem = eqx.tree_at(lambda p: p.windows.force, self.problem, self.applied + torque)
+    def _answer(self, torque: np.ndarray, share: float) -> float:
+        problem = eqx.tree_at(lambda p: p.windows.force, self.problem, self.applied + share * torque)
         return answered(problem, self.unknowns)[0] - self.still
 
-    def _shown(self, shift: np.ndarray) -> float:
-        measured = np.asarray(self.problem.windows.measured) - shift
+    def _shown(self, shift: np.ndarray, share: float) -> float:
+        measured = np.asarray(self.problem.windows.measured) - share * shift
         problem = eqx.tree_at(lambda p: p.windows.measured, self.problem, measured)
         return answered(problem, self.unknowns)[0] - self.still

@@ -281,5 +281,9 @@ def softer(problem: Problem, speeds: Mapping[str, float], share: float) -> Probl
 def _level(law: AbstractEffect, system: System, deepest: float) -> float:
     """The largest torque that a law states [N m], or exerts at rest in a contact pressed in by all that was seen [rad]."""
     found, stiffness = values(law), 0.0 if system.contact is None else system.contact.stiffness
-    at_rest = law.dry(Instant(*np.zeros(7), np.float64(deepest), np.float64(1.0), stiffness, system.inertia))
+    still = np.float64(0.0)
+    moment = Instant(
+        still, still, still, still, still, still, still, np.float64(deepest), np.float64(1.0), stiffness, system.inertia
+    )
+    at_rest = law.dry(moment)
     return max((abs(found[n]) for n, s in specs(law).items() if s.unit == "N m"), default=float(at_rest))

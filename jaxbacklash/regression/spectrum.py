@@ -74,7 +74,11 @@ def read_off(
             if wave.over != "t":
                 known = form.kept(canonical_name(law), lambda: _over_angle(pair, over, spec, finer, most))
                 frequency, step = _of_angle(known, seen, own)
-            frequency = _sharpened(lambda f, seen=seen, own=own: _fall(own(pair(f)), seen), frequency, step, spec)
+
+            def height(frequency: float, own: Any = own, seen: np.ndarray = seen) -> float:
+                return _fall(own(pair(frequency)), seen)
+
+            frequency = _sharpened(height, frequency, step, spec)
         design = np.column_stack([by, pair(frequency)])
         found = np.linalg.lstsq(white(design), white(left), rcond=None)[0]
         rest, sizes = left - design @ found, found[-2:]

@@ -19,7 +19,7 @@ from ..parameters import free_specs, ravel, specs
 from ..records import Record
 from ..signals.bump import HALF_WIDTH
 from ..system import System
-from .along_motion import motion, own_torques, torques
+from .along_motion import Motion, motion, own_torques, torques
 from .averaged import Averaged
 
 ORDER = 8
@@ -36,7 +36,8 @@ class WeakForm(Averaged):
 
     def __init__(self, record: Record, *, quicker: WeakForm | None = None) -> None:
         super().__init__(record, HALF_WIDTH if quicker is None else HALF_WIDTH / QUICKER)
-        self.record, self.motion = record, motion(record) if quicker is None else quicker.motion
+        self.record = record
+        self.motion: Motion = motion(record) if quicker is None else quicker.motion
         self.blind = record.kind == "transmitted"  # the link is not seen, so there is nothing to regress on
         self._columns: dict[str, tuple[np.ndarray, np.ndarray]] = {}
         self._kept: dict[str, Any] = {}
