@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 import jax.numpy as jnp
+import numpy as np
 
-from .effects.scales import natural_frequency
 from .mechanics import AbstractEffect, Instant
 from .parameters import Scalar, param
 
@@ -41,6 +41,8 @@ class SensorOffset(AbstractEffect):
         return value + self.z_s
 
 
+LABORATORY = 0.02
+"""Time in which a joint of the source paper's size turns by a radian of phase [s]."""
 QUICKEST = 1e-3
 """Time constant [s] below which what a low-pass remembers follows no quicker: fixed steps must be able to take it."""
 
@@ -62,7 +64,9 @@ class SensorFilter(AbstractEffect):
 
     @classmethod
     def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
-        return [cls(share / natural_frequency(system)) for share in (0.1, 0.2, 0.4, 0.8)]
+        # Shares of the time in which the motion of the record turns by a radian of phase.
+        radian = LABORATORY if motion is None else float(np.std(motion.y - motion.x) / max(np.std(motion.dy - motion.dx), 1e-300))
+        return [cls(share * radian) for share in (0.1, 0.2, 0.4, 0.8)]
 
     def simpler(self) -> list[AbstractEffect]:
         return [SensorDelay(self.tau_f)]
