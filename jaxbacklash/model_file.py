@@ -225,8 +225,7 @@ def _effect(name: str, entries: Any, where: str) -> AbstractEffect:
     unknown = sorted(set(entries) - set(described) - set(settings))
     if unknown:
         raise BadInput(f"{where}: [effects.{name}] has an entry {unknown[0]}, wanted {', '.join([*described, *settings])}")
-    spec_of = {key: field.metadata["spec"] for key, field in described.items()}
-    missing = [key for key, spec in spec_of.items() if key not in entries and not spec.fixed and spec.usual is None]
+    missing = [key for key, field in described.items() if key not in entries and not field.metadata["spec"].fixed]
     if missing:
         raise BadInput(f"{where}: [effects.{name}] lacks {missing[0]}, wanted {', '.join(described)}")
     numbers = {key: _value(value, f"{where}: [effects.{name}] {key}") for key, value in entries.items() if key in described}
@@ -240,7 +239,7 @@ def _effect(name: str, entries: Any, where: str) -> AbstractEffect:
         raise BadInput(f"{where}: [effects.{name}] lacks {lacking[0] if lacking else 'an entry'}, wanted "
                        f"{', '.join([*described, *settings])}") from None  # fmt: skip
     for key, value in numbers.items():
-        spec = spec_of[key]
+        spec = described[key].metadata["spec"]
         if not spec.lower <= value <= spec.upper:
             raise BadInput(f"{where}: [effects.{name}] {key} is {value:g}, wanted {spec.lower:g} to {spec.upper:g}")
     assert canonical_name(effect) == name
