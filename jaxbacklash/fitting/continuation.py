@@ -115,7 +115,7 @@ def continued(
     """
     way, speeds = _Way(first, last=SHARP if speeds else TIGHTEST), speeds or {}
     while (tie := way.next_tie()) is not None:
-        at = _softened(tied(problem, tie), speeds)
+        at = _with_friction_width(tied(problem, tie), speeds)
         how = Levenberg(limit=BETWEEN if tie < SHARP else LAST, atol=ROUGHLY)
         way.note(tie, at, minimise(at, way.begin(tie, start), how))
     best = way.likeliest()
@@ -271,7 +271,7 @@ def tied(problem: Problem, tie: float) -> Problem:
     return eqx.tree_at(lambda p: p.tie, problem, np.asarray(float(tie)))
 
 
-def _softened(problem: Problem, speeds: Mapping[str, float]) -> Problem:
+def _with_friction_width(problem: Problem, speeds: Mapping[str, float]) -> Problem:
     tie = float(problem.tie)
     if not speeds or tie >= SHARP:
         return problem
