@@ -22,6 +22,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.effect_recovery import OUTSIDE as BEYOND
 from benchmarks.effect_recovery import SETS, Case, family, make_case
 from benchmarks.peers import sindy, weak_form
 from jaxbacklash.records import Record
@@ -132,7 +133,7 @@ def take_over(work: Path, files: list[Path], duration: float) -> None:
 
 def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
     """What a column of the table says of one method."""
-    unknown = [r for r in rows if set(r["hidden"]) & set(OUTSIDE_CATALOGUE)]
+    unknown = [r for r in rows if set(r["hidden"]) & set(BEYOND)]
     known = [r for r in rows if r not in unknown]
     clean = [r for r in known if not r["hidden"]]
     exact = [r for r in known if family(r["found"]) == family(r["hidden"])]
@@ -174,7 +175,7 @@ def table(part: str, columns: dict[str, list[dict[str, Any]] | None]) -> str:
         )
     for method, rows in columns.items():
         for r in rows or []:
-            if set(r["hidden"]) & set(OUTSIDE_CATALOGUE) or family(r["found"]) == family(r["hidden"]) or method == "sindy":
+            if set(r["hidden"]) & set(BEYOND) or family(r["found"]) == family(r["hidden"]) or method == "sindy":
                 continue
             told = "+".join(r["hidden"]) or "nothing", "+".join(r["found"]) or "nothing"
             lines.append(f"    {TITLES[method]}: {r['number']} {told[0]} -> {told[1]}{'' if r['complete'] else ', incomplete'}")

@@ -1,6 +1,6 @@
 """Which effects are found on joints unlike the laboratory's: any size, rate, noise and encoder, strengths from barely visible.
 
-    python -m benchmarks.effect_strangers [--records 72] [--noise 1 10 30] [--seed 1] [--only 3 8] [--work DIR] [--tiny]
+    python -m benchmarks.effect_strangers [--records 72] [--noise 1 10 30] [--seed 1] [--set rigs] [--only 3 8] [--work DIR]
 
 A twelfth of the records hides something outside the catalogue, a sixth nothing, the rest one effect, two or three, drawn at
 random; see `tests.independent.strangers`. The simulation is non-smooth and shares nothing with the package. As in
@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.effect_recovery import EXCITATIONS, SINGLES, Case, judge, table
+from benchmarks.effect_recovery import EXCITATIONS, OUTSIDE, RIG_SINGLES, SINGLES, Case, judge, named_today, table
 from jaxbacklash.criticism.refine import refine
 from jaxbacklash.program import start
 from jaxbacklash.records import Record
@@ -33,40 +33,51 @@ from tests.independent.strangers import RUBBING, make_stranger
 HIDES = (1, 2, 0, 1, 3, 1, 2, 0, 1, None, 2, 1)
 
 
-def hidden_set(rng, count: int | None, alone: int) -> tuple[str, ...]:
+# What is drawn from, and which of it every record of that set has at least one of.
+DRAWN: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+    "laboratory": (SINGLES, SINGLES), "rigs": (SINGLES + RIG_SINGLES, RIG_SINGLES),
+}  # fmt: skip
+BEGIN = {"laboratory": 41, "rigs": 59}
+
+
+def hidden_set(rng, count: int | None, alone: int, of: str = "laboratory") -> tuple[str, ...]:
     """Names of what a record hides; single effects go through the catalogue by turns, only one law of friction in the joint.
 
     No two that are one by definition: a preload beside a spring in the gap only moves the place where that spring rests.
     """
     if count is None:
-        return (str(rng.choice(OUTSIDE_CATALOGUE)),)
+        return (str(rng.choice(OUTSIDE_CATALOGUE if of == "laboratory" else OUTSIDE)),)
+    drawn, wanted = DRAWN[of]
     if count == 1:
-        return (SINGLES[alone % len(SINGLES)],)
+        return (wanted[alone % len(wanted)],)
     while True:
-        names = tuple(str(n) for n in rng.choice(SINGLES, count, replace=False))
-        if sum(n in RUBBING for n in names) <= 1 and not {"gap_spring", "preload"} <= set(names):
+        names = tuple(str(n) for n in rng.choice(drawn, count, replace=False))
+        laws = {n.partition(":")[0] for n in names}
+        one_of_each = len(laws) == len(names) and not {"gap_spring", "preload"} <= laws
+        if sum(n in RUBBING for n in names) <= 1 and one_of_each and (not count or set(names) & set(wanted)):
             return names
 
 
-def make_case(number: int, noise: float, seed: int) -> Case:
-    """Record ``number``: the same joint and motion at every noise."""
-    rng = np.random.default_rng([seed, 41, number])
+def make_case(number: int, noise: float, seed: int, of: str = "laboratory") -> Case:
+    """Record ``number`` of a set: the same joint and motion at every noise."""
+    rng = np.random.default_rng([seed, BEGIN[of], number])
     count = HIDES[number % len(HIDES)]
     alone = sum(h == 1 for h in HIDES) * (number // len(HIDES)) + sum(h == 1 for h in HIDES[: number % len(HIDES)])
-    hidden = hidden_set(rng, count, alone + 4 * seed)
+    hidden = hidden_set(rng, count, alone + 4 * seed, of)
     which = int(rng.integers(len(EXCITATIONS)))
     made = make_stranger(rng, hidden, (EXCITATIONS[which], EXCITATIONS[(which + 1) % len(EXCITATIONS)]), noise)
     # Some of these joints move further than any that is believed without being told the unit.
     record, heldout = (Record(r["t"], {n: r[n] for n in "xz"}, confirmed=frozenset("txz")) for r in (made.seen, made.again))
-    return Case(number, hidden, made.rig, made.values, record, made.kind, heldout)
+    known = named_today(made.values)
+    return Case(number, tuple(known), made.rig, known, record, made.kind, heldout)
 
 
-def answered(work: Path, number: int, noise: float, seed: int) -> dict[str, Any]:
+def answered(work: Path, number: int, noise: float, seed: int, of: str) -> dict[str, Any]:
     """What was found in one record, from its file if it was found before."""
-    path = work / f"seed{seed}-x{noise:g}" / f"{number:03d}.json"
+    path = work / f"{'' if of == 'laboratory' else of + '-'}seed{seed}-x{noise:g}" / f"{number:03d}.json"
     if path.exists():
         return dict(json.loads(path.read_text(encoding="utf-8")))
-    case = make_case(number, noise, seed)
+    case = make_case(number, noise, seed, of)
     begin = time.perf_counter()
     found = refine(case.record, heldout=case.heldout, inertia=case.rig.inertia)
     row = judge(case, found, time.perf_counter() - begin)
@@ -86,6 +97,7 @@ def main() -> None:
     parser.add_argument("--records", type=int, default=72)
     parser.add_argument("--noise", type=float, nargs="+", default=[1.0, 10.0, 30.0])
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--set", choices=tuple(BEGIN), default="laboratory", dest="of")
     parser.add_argument("--only", type=int, nargs="*", default=None)
     parser.add_argument("--work", type=Path, default=None)
     parser.add_argument("--side-by-side", type=int, default=1, help="records at a time; seconds then say little")
@@ -98,7 +110,7 @@ def main() -> None:
             # Every few records a process of its own: compiled programs of many lengths and rates do not pile up. (An executor
             # of `concurrent.futures` that replaces its processes can wait for ever: CPython issue 115634.)
             with spawn.Pool(options.side_by_side, partial(start, brief=True), maxtasksperchild=6) as pool:
-                one = partial(answered, options.work or Path(folder), noise=noise, seed=options.seed)
+                one = partial(answered, options.work or Path(folder), noise=noise, seed=options.seed, of=options.of)
                 rows = list(pool.imap(one, numbers, chunksize=1))
             print(f"\nstrangers, noise x{noise:g}, seed {options.seed}\n{table(rows)}\n", flush=True)
 

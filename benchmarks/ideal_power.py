@@ -28,7 +28,11 @@ from tests.independent.cramer_rao import base_motion_bound, widest_spacing
 from tests.independent.generator import make_excitation, make_rig, simulate_truth
 from tests.independent.rigs import Excitation, Rig
 
-STRENGTH = {"gravity": "G", "coulomb_joint": "Tc", "cubic_stiffness": "k3", "asymmetric_gap": "z0", "contact_damping": "cc"}
+STRENGTH = {
+    "gravity": "G", "coulomb_joint": "Tc", "cubic_stiffness": "k3", "asymmetric_gap": "z0", "contact_damping": "cc",
+    "load_friction": "mu", "damping_drift": "r", "contact_exponent": "p",
+}  # fmt: skip
+DEEP = 0.005  # rad, deflection at which the stiffness of a contact with another exponent is k
 RATE, SIGMA = 500.0, 3e-5  # Hz, rad
 KINDS = ("multisine", "stepped", "modulated", "chirp")
 SPACINGS = (0.04, 0.03, 0.025, 0.02, 0.015, 0.0125, 0.01, 0.008, 0.006)  # s, between knots that may hold x(t)
@@ -74,8 +78,11 @@ def unit_torques(rig: Rig, truth: dict[str, np.ndarray]) -> dict[str, np.ndarray
     z, dz = truth["y"] - truth["x"], truth["v"] - truth["dx"]
     d = z - np.clip(z, -0.5 * rig.backlash, 0.5 * rig.backlash)
     touch = (d != 0.0).astype(float)
+    grown = np.log(np.where(d != 0.0, np.abs(d), DEEP) / DEEP)
     return {"gravity": np.sin(truth["y"]), "coulomb_joint": -np.sign(dz), "cubic_stiffness": -(d**3),
-            "asymmetric_gap": rig.stiffness * touch, "contact_damping": -touch * dz}  # fmt: skip
+            "asymmetric_gap": rig.stiffness * touch, "contact_damping": -touch * dz,
+            "load_friction": -rig.stiffness * np.abs(d) * np.sign(dz), "damping_drift": -rig.damping * truth["t"] * dz,
+            "contact_exponent": -rig.stiffness * d * grown}  # fmt: skip
 
 
 def least_errors(of: Setting, duration: float) -> dict[str, float]:

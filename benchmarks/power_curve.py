@@ -23,9 +23,20 @@ from typing import Any
 import numpy as np
 from scipy.stats import beta
 
-from benchmarks.ideal_power import RATE, SIGMA, STRENGTH, Setting, ideal_power, least_errors, one_sided, setting, threshold
+from benchmarks.ideal_power import (
+    DEEP,
+    RATE,
+    SIGMA,
+    STRENGTH,
+    Setting,
+    ideal_power,
+    least_errors,
+    one_sided,
+    setting,
+    threshold,
+)
 from jaxbacklash.mechanics import catalogue
-from jaxbacklash.parameters import specs
+from jaxbacklash.parameters import free_specs, specs
 from jaxbacklash.records import Record
 from tests.independent.generator import measure, simulate_truth
 
@@ -34,11 +45,18 @@ MULTIPLES = (1.0, 2.0, 3.0, 4.0, 6.0, 9.0)
 
 def make_record(of: Setting, name: str | None, strength: float, multiple: float, duration: float) -> Record:
     """The joint with one weak effect, or none, as it is measured; every strength has a noise of its own."""
-    effects = {} if name is None else {name: {STRENGTH[name]: strength}}
-    truth = simulate_truth(of.rig, effects, of.excitation, RATE, duration)
+    truth = simulate_truth(of.rig, weak(name, strength), of.excitation, RATE, duration)
     rng = np.random.default_rng([37, of.seed, round(10 * multiple), list(STRENGTH).index(name) if name else 99])
     seen = measure(truth, rng, SIGMA, SIGMA)
     return Record(seen["t"], {"x": seen["x"], "z": seen["z"]})
+
+
+def weak(name: str | None, strength: float) -> dict[str, dict[str, float]]:
+    """An effect so far from the value at which it vanishes, ready for `simulate_truth`."""
+    if name is None:
+        return {}
+    value = strength + float(specs(catalogue()[name]())[STRENGTH[name]].null or 0.0)
+    return {name: {STRENGTH[name]: value, **({"d0": DEEP} if name == "contact_exponent" else {})}}
 
 
 def trial(
@@ -71,7 +89,7 @@ def trial(
 
 def _strengths(name: str) -> int:
     """Parameters a law brings to the criterion."""
-    return sum(not spec.fixed for spec in specs(catalogue()[name]()).values())
+    return len(free_specs(catalogue()[name]()))
 
 
 def kept(path: Path, make: Any) -> Any:
@@ -118,7 +136,7 @@ def table(rows: list[dict[str, Any]]) -> str:
             seen = [(*shares(rows, n, how).get(m, (0, 0)), float(ideal_power(m, limit, one_sided(n)))) for n in STRENGTH]
             hits, count, wanted = (sum(v) for v in zip(*((h, c, c * p) for h, c, p in seen)))
             if count:
-                lines.append(f"  all five, {m:g} standard errors, {how}: {hits} of {count}, ideal {wanted:.1f}")
+                lines.append(f"  all of them, {m:g} standard errors, {how}: {hits} of {count}, ideal {wanted:.1f}")
     return "\n".join(lines)
 
 
@@ -133,8 +151,8 @@ def draw(rows: list[dict[str, Any]], out: Path) -> None:
     with matplotlib.rc_context(
         {"svg.fonttype": "none", "svg.hashsalt": "power", "text.color": INK, "axes.labelcolor": INK, "font.size": 9}
     ):
-        figure = Figure(figsize=(11.0, 3.1), layout="constrained")
-        axes = figure.subplots(1, len(STRENGTH), sharey=True)
+        figure = Figure(figsize=(11.0, 5.2), layout="constrained")
+        axes = figure.subplots(2, -(-len(STRENGTH) // 2), sharey=True).ravel()
         fine = np.linspace(0.0, 10.0, 201)
         for ax, name in zip(axes, STRENGTH):
             ax.axvline(np.sqrt(limit), color=GAP, lw=0.8, ls=":", label="threshold of `refine`")
@@ -164,7 +182,10 @@ def draw(rows: list[dict[str, Any]], out: Path) -> None:
             ax.set_xlim(0.0, 10.0)
             ax.set_ylim(-0.04, 1.04)
             ax.spines[["top", "right"]].set_visible(False)
-        axes[0].set_ylabel("share of records in which it is found")
+        for ax in axes[:: axes.size // 2]:
+            ax.set_ylabel("share of records in which it is found")
+        for ax in axes[len(STRENGTH) :]:
+            ax.set_axis_off()
         figure.supxlabel("strength in least standard errors any unbiased method can have", fontsize=9)
         handles, labels = axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside upper center", ncols=4, frameon=False)

@@ -51,7 +51,10 @@ class Instant:
     0 in the play (between the two only inside a smoothed corner); the joint's ``stiffness`` [N m/rad], the link's
     ``inertia`` [kg m^2]; ``state``, the effect's own internal states, in the order of its ``states``; ``slip_z`` and
     ``slip_y``, the direction (-1, 0, 1) in which joint and link slide where a solver has settled it, None where the sign of
-    the speed must be taken, smoothed; ``drifted``, what the contact's stiffness is now, as a multiple of ``stiffness``.
+    the speed must be taken, smoothed; ``drifted``, what the contact's stiffness is now, as a multiple of ``stiffness``;
+    ``damping`` of the joint's damper [N m s/rad]; ``rubbed``, what dry friction is now, as a multiple of what its laws state;
+    ``dseen``, rate of the motion that is measured, z' or y' [rad/s]; ``side`` of the play, -1, 0 or 1, where a solver has
+    settled it, None where it is the sign of the deflection.
     """
 
     t: Scalar
@@ -69,10 +72,29 @@ class Instant:
     slip_z: Scalar | None = None
     slip_y: Scalar | None = None
     drifted: Scalar = 1.0
+    damping: Scalar = 0.0
+    rubbed: Scalar = 1.0
+    dseen: Scalar = 0.0
+    side: Scalar | None = None
 
     def seen_by(self, state: tuple[Scalar, ...]) -> Instant:
         """The same moment with one effect's internal states filled in."""
         return replace(self, state=state)
+
+
+@dataclass(frozen=True)
+class Wave:
+    """A law that is a sine of a coordinate, by the names of its parameters.
+
+    Attributes: ``strength`` that the sine is multiplied with; ``phase``; ``frequency`` with which the coordinate is multiplied,
+    None where that is one; ``over``, the coordinate: ``"t"``, ``"y"`` or ``"x"``. Frequency and phase are read off the spectrum
+    of the torque that is missing over that coordinate.
+    """
+
+    strength: str
+    phase: str
+    frequency: str | None
+    over: str
 
 
 class AbstractEffect(eqx.Module):
@@ -82,10 +104,13 @@ class AbstractEffect(eqx.Module):
     remembers; ``port`` where the torque acts, ``"joint"`` (between link and base, so it is part of the transmitted torque) or
     ``"ground"``; ``family`` a name shared by laws that data often cannot tell apart; ``catalogued`` False keeps a law out of the
     search for missing effects; ``slides`` True for dry friction, whose torque is ``dry`` against the direction of sliding at its
-    port; ``absorbs`` names of simpler laws that this one contains, so that it takes their place instead of standing beside them
-    (parameters of one name are then the same); ``yields`` parameters that the presence of another effect makes superfluous, and
-    that effect's name: held beside it; ``motions`` of a link for which the law makes sense, ``"turning"`` and ``"sliding"``;
-    ``joints`` in which it does something that the joint does not do already, ``"play"``, ``"spring"`` and ``"free"``.
+    port; ``beside`` True for friction in the joint that stands beside another law of it, where else there is one; ``absorbs``
+    names of simpler laws that this one contains, so that it takes their place instead of standing beside them (parameters of one
+    name are then the same); ``yields`` parameters that the presence of another effect makes superfluous, and that effect's name:
+    held beside it; ``motions`` of a link for which the law makes sense, ``"turning"`` and ``"sliding"``; ``joints`` in which it
+    does something that the joint does not do already, ``"play"``, ``"spring"`` and ``"free"``; ``alike`` names of laws for which
+    it is taken, or they for it, each with what a record must hold to tell the two; ``wave`` for a law that is a sine of a
+    coordinate.
     """
 
     states: ClassVar[tuple[str, ...]] = ()
@@ -94,10 +119,13 @@ class AbstractEffect(eqx.Module):
     family: ClassVar[str | None] = None
     catalogued: ClassVar[bool] = True
     slides: ClassVar[bool] = False
+    beside: ClassVar[bool] = False
     absorbs: ClassVar[tuple[str, ...]] = ()
     yields: ClassVar[dict[str, str]] = {}
     motions: ClassVar[tuple[str, ...]] = ("turning", "sliding")
     joints: ClassVar[tuple[str, ...]] = ("play", "spring", "free")
+    alike: ClassVar[dict[str, str]] = {}
+    wave: ClassVar[Wave | None] = None
 
     @classmethod
     def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
@@ -120,6 +148,10 @@ class AbstractEffect(eqx.Module):
         laws = [catalogue()[name] for name in self.absorbs]
         return [law(**{f.name: own[f.name] for f in dataclasses.fields(law) if f.name in own}) for law in laws]
 
+    def forms(self) -> list[AbstractEffect]:
+        """The same law in its other forms, an option set or a shape held, each at the values that are nearest to this one's."""
+        return []
+
     def scaled(self, factor: float) -> AbstractEffect:
         """The same law ``factor`` times as strong: along a given motion it exerts ``factor`` times the torque."""
         described = {f.name: f.metadata["spec"] for f in dataclasses.fields(self) if "spec" in f.metadata}
@@ -134,6 +166,11 @@ class AbstractEffect(eqx.Module):
         """Size, >= 0, of the dry friction against the speed seen by the port, at rest the most it can hold [N m]."""
         return jnp.zeros_like(now.y)
 
+    def kink(self, now: Instant, ddz: Scalar) -> tuple[Scalar, Scalar] | None:
+        """A quantity at whose zero the torque has a kink that no edge of the play makes, and its rate where the relative motion
+        is accelerated by ``ddz`` [rad/s^2]: steps end there. None where the law has no such kink."""
+        return None
+
     def rate(self, now: Instant) -> tuple[Scalar, ...]:
         """Time derivatives of the internal states, in the order of ``states``."""
         return ()
@@ -142,20 +179,25 @@ class AbstractEffect(eqx.Module):
         """Internal states of a link found at this moment when nothing more is known."""
         return tuple(jnp.zeros_like(now.y) for _ in self.states)
 
-    def reshape(self, play: Play, t: Scalar) -> Play:
-        """The play as this effect leaves it."""
+    def reshape(self, play: Play, t: Scalar, x: Scalar) -> Play:
+        """The play as this effect leaves it, at time ``t`` [s] and with the base at ``x`` [rad]."""
         return play
 
     def drift(self, t: Scalar) -> Scalar:
         """The contact stiffness now, as a multiple of the joint's; the torque that the change makes is this effect's own."""
         return 1.0
 
-    def observe(self, value: Scalar) -> Scalar:
-        """The measured channel as this effect leaves it."""
+    def rubs(self, t: Scalar) -> Scalar:
+        """Dry friction now, >= 0, as a multiple of what its laws state."""
+        return 1.0
+
+    def observe(self, value: Scalar, state: tuple[Scalar, ...] = ()) -> Scalar:
+        """The measured channel as this effect leaves it; an effect with internal states is given them."""
         return value
 
-    def lag(self) -> Scalar | None:
-        """How far the measured channel lags behind the input channel [s]; None when the effect adds no lag."""
+    def lag(self, t: Scalar) -> Scalar | None:
+        """How far the measured channel lags behind the input channel at time ``t`` of the record [s], a constant or in proportion
+        to the time; None when the effect adds no lag."""
         return None
 
 
@@ -163,6 +205,19 @@ def canonical_name(effect: AbstractEffect | type[AbstractEffect]) -> str:
     """The name used by the command line, the JSON and the reports: ``TorqueRipple`` is ``torque_ripple``."""
     cls = effect if isinstance(effect, type) else type(effect)
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
+
+
+def told_apart(one: str, other: str) -> str | None:
+    """What a record must hold to tell two laws, by their names, from each other; None where neither is said to be like the other.
+
+    Examples
+    --------
+    >>> from jaxbacklash.mechanics import told_apart
+    >>> told_apart("sensor_delay", "clock_drift")
+    'a longer record: the lag of another clock grows, a delay stays'
+    """
+    laws = catalogue()
+    return next((laws[a].alike[b] for a, b in ((one, other), (other, one)) if a in laws and b in laws[a].alike), None)
 
 
 def motion_of(translational: bool) -> str:

@@ -225,7 +225,8 @@ def _effect(name: str, entries: Any, where: str) -> AbstractEffect:
     unknown = sorted(set(entries) - set(described) - set(settings))
     if unknown:
         raise BadInput(f"{where}: [effects.{name}] has an entry {unknown[0]}, wanted {', '.join([*described, *settings])}")
-    missing = [key for key, field in described.items() if key not in entries and not field.metadata["spec"].fixed]
+    spec_of = {key: field.metadata["spec"] for key, field in described.items()}
+    missing = [key for key, spec in spec_of.items() if key not in entries and not spec.fixed and spec.usual is None]
     if missing:
         raise BadInput(f"{where}: [effects.{name}] lacks {missing[0]}, wanted {', '.join(described)}")
     numbers = {key: _value(value, f"{where}: [effects.{name}] {key}") for key, value in entries.items() if key in described}
@@ -239,7 +240,7 @@ def _effect(name: str, entries: Any, where: str) -> AbstractEffect:
         raise BadInput(f"{where}: [effects.{name}] lacks {lacking[0] if lacking else 'an entry'}, wanted "
                        f"{', '.join([*described, *settings])}") from None  # fmt: skip
     for key, value in numbers.items():
-        spec = described[key].metadata["spec"]
+        spec = spec_of[key]
         if not spec.lower <= value <= spec.upper:
             raise BadInput(f"{where}: [effects.{name}] {key} is {value:g}, wanted {spec.lower:g} to {spec.upper:g}")
     assert canonical_name(effect) == name

@@ -24,7 +24,8 @@ class Spec:
 
     Attributes: ``unit`` for a rotating joint (``translational`` rewrites it), ``null`` the value at which the law
     vanishes (None: a shape parameter, not identified at null), ``lower``/``upper`` physical bounds, ``fixed`` True
-    for a numerical setting that is never fitted, ``scale`` a typical size of a change, ``label`` words for reports.
+    for a numerical setting that is never fitted, ``scale`` a typical size of a change, ``label`` words for reports, ``usual``
+    the value of a shape at which a fit holds it: it is free in a law that has another one.
     """
 
     unit: str = "1"
@@ -34,6 +35,7 @@ class Spec:
     fixed: bool = False
     scale: float | None = None
     label: str = ""
+    usual: float | None = None
 
     @property
     def positive(self) -> bool:
@@ -51,8 +53,8 @@ def _scalar(value: Any) -> Any:
 def param(*, default: float | None = None, required: bool = False, **spec: Any) -> Any:
     """Declare a parameter as a field of a law; see `Spec` for the keywords.
 
-    Without a ``default`` the null value is taken, else the lower bound, else zero, so that a law can be built before its
-    values are known; ``required`` parameters must be given.
+    Without a ``default`` the null or usual value is taken, else the lower bound, else zero, so that a law can be built before
+    its values are known; ``required`` parameters must be given.
 
     Examples
     --------
@@ -68,7 +70,8 @@ def param(*, default: float | None = None, required: bool = False, **spec: Any) 
     keywords: dict[str, Any] = {"metadata": {"spec": described}, "converter": _scalar}
     if not required:
         fallback = described.lower if np.isfinite(described.lower) else 0.0
-        known = described.null if default is None else default
+        told = described.null if described.usual is None else described.usual
+        known = told if default is None else default
         keywords["default"] = float(fallback if known is None else known)
     return eqx.field(**keywords)
 
@@ -96,8 +99,9 @@ def specs(tree: Any) -> dict[str, Spec]:
 
 
 def free_specs(tree: Any) -> dict[str, Spec]:
-    """The same without those that are never fitted."""
-    return {name: spec for name, spec in specs(tree).items() if not spec.fixed}
+    """The same without those that are not fitted: settings, and shapes that have their usual value."""
+    present = values(tree)
+    return {name: spec for name, spec in specs(tree).items() if not spec.fixed and spec.usual != present[name]}
 
 
 def ravel(tree: Any) -> np.ndarray:

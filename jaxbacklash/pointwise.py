@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import jax.numpy as jnp
@@ -12,6 +12,10 @@ from .compiled import kept_jit
 from .mechanics import AbstractEffect, Drive, Instant
 from .system import System
 
+SEEN = (
+    "t", "y", "dy", "x", "dx", "z", "dz", "deflection", "contact", "stiffness", "inertia", "drifted", "damping", "rubbed",
+)  # fmt: skip
+"""What a law without internal states sees of a moment, where the direction of sliding is not known."""
 FEWEST = 1024
 """Samples of the smallest program; larger ones have twice, four times, ... as many."""
 
@@ -30,19 +34,15 @@ def along(system: System, t: Any, y: Any, dy: Any, x: Any, dx: Any, force: Any =
     """What a system says along a motion, arrays (N,) or numbers, its internal states at rest: [s, rad, rad/s, N m]."""
     rows = [np.asarray(row, float) for row in np.broadcast_arrays(t, y, dy, x, dx, force)]
     size, (t, y, dy, x, dx, _) = rows[0].size, rows
-    z, dz, deflection, contact, stiffness, inertia, drifted, torque, joint = (
-        np.asarray(row)[:size] for row in _along(system, tuple(padded(row) for row in rows))
-    )
-    now = Instant(t, y, dy, x, dx, z, dz, deflection, contact, stiffness, inertia, drifted=drifted)
+    *seen, torque, joint = (np.asarray(row)[:size] for row in _along(system, tuple(padded(row) for row in rows)))
+    told: dict[str, Any] = dict(zip(SEEN[5:], seen))
+    now = Instant(t, y, dy, x, dx, **told)
     return Pointwise(now, torque, joint)
 
 
 def exerted(effect: AbstractEffect, now: Instant) -> np.ndarray:
     """Torque of one law without internal states (N,) at what it sees, arrays (N,) or numbers [N m]."""
-    seen = (
-        now.t, now.y, now.dy, now.x, now.dx, now.z, now.dz, now.deflection, now.contact, now.stiffness, now.inertia, now.drifted
-    )  # fmt: skip
-    rows = tuple(padded(np.asarray(row, float)) for row in np.broadcast_arrays(*seen))
+    rows = tuple(padded(np.asarray(row, float)) for row in np.broadcast_arrays(*(getattr(now, name) for name in SEEN)))
     return np.asarray(_exerted(effect, rows))[: now.t.size]
 
 
@@ -62,12 +62,11 @@ def torques(system: System, rows: Any) -> tuple[Instant, Any, Any]:
 
 @kept_jit
 def _exerted(effect: AbstractEffect, rows: Any) -> Any:
-    *seen, drifted = rows
-    return jnp.broadcast_to(effect.torque(replace(Instant(*seen), drifted=drifted)), rows[0].shape)
+    return jnp.broadcast_to(effect.torque(Instant(**dict(zip(SEEN, rows)))), rows[0].shape)
 
 
 @kept_jit
 def _along(system: System, rows: Any) -> tuple[Any, ...]:
     now, torque, joint = torques(system, rows)
-    said = (now.z, now.dz, now.deflection, now.contact, now.stiffness, now.inertia, now.drifted, torque, joint)
+    said = (*(getattr(now, name) for name in SEEN[5:]), torque, joint)
     return tuple(jnp.broadcast_to(v, rows[0].shape) for v in said)

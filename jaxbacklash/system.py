@@ -80,9 +80,9 @@ class System(eqx.Module):
         """True when steps should be located: there is a play, or dry friction."""
         return self.has_play or bool(self.slides)
 
-    def edges(self, t: Scalar) -> tuple[Scalar, Scalar]:
-        """Lower and upper edge of the play at time ``t`` [rad]."""
-        play = self._play(t)
+    def edges(self, t: Scalar, x: Scalar = 0.0) -> tuple[Scalar, Scalar]:
+        """Lower and upper edge of the play at time ``t`` with the base at ``x`` [rad]."""
+        play = self._play(t, x)
         return play.centre - 0.5 * play.backlash, play.centre + 0.5 * play.backlash
 
     def rates(self, t: Scalar, state: State, drive: Drive, side: Scalar | None = None) -> State:
@@ -110,6 +110,12 @@ class System(eqx.Module):
         hidden = tuple(r for name, own in self._own_states(state) for r in self.effects[name].rate(now.seen_by(own)))
         return (state[1], (drive.force + torque) / self.inertia, *hidden)
 
+    def kinks(self, t: Scalar, state: State, drive: Drive, side: Scalar | None, ddz: Scalar) -> list[tuple[Scalar, Scalar]]:
+        """Quantities at whose zero a law has a kink, and their rates with the relative motion accelerated by ``ddz``."""
+        now = self.instant(t, state, drive, side)
+        found = (self.effects[name].kink(now.seen_by(own), ddz) for name, own in self._own_states(state))
+        return [kink for kink in found if kink is not None]
+
     def transmitted(self, t: Scalar, state: State, drive: Drive, side: Scalar | None = None) -> Scalar:
         """Torque the link exerts on its base through the joint [N m]."""
         _, joint = self.torques(self.instant(t, state, drive, side), state)
@@ -121,16 +127,21 @@ class System(eqx.Module):
             value = self.transmitted(t, state, drive)
         else:
             value = state[0] - drive.x if self.observed == "z" else state[0]
-        return self.observe(value)
+        return self.observe(value, state[2:])
 
-    def observe(self, value: Scalar) -> Scalar:
-        """What the measuring chain makes of the channel that it measures."""
-        return observe(self.effects, value)
+    def observe(self, value: Scalar, hidden: State = ()) -> Scalar:
+        """What the measuring chain makes of the channel that it measures, ``hidden`` the internal states of all effects."""
+        return observe(self.effects, value, hidden)
 
-    def lag(self) -> Scalar | None:
-        """Delay of the measured channel behind the input [s], None when nothing in the system delays it."""
-        lags = [lag for effect in self.effects.values() if (lag := effect.lag()) is not None]
+    def lag(self, t: Scalar = 0.0) -> Scalar | None:
+        """Delay of the measured channel behind the input at time ``t`` [s], None when nothing in the system delays it."""
+        lags = [lag for effect in self.effects.values() if (lag := effect.lag(t)) is not None]
         return sum(lags) if lags else None
+
+    def passed(self, t: Scalar, h: Scalar) -> tuple[Scalar, Scalar]:
+        """When the motion took place that the measured channel shows at ``t``, and how much of it passes in ``h`` there [s]."""
+        begin, end = self.lag(t), self.lag(t + h)
+        return (t, h) if begin is None else (t - begin, h - (end - begin))
 
     def rest(self, t: Scalar, y: Scalar, dy: Scalar, drive: Drive) -> State:
         """State of a link found at ``y``, ``dy`` when nothing is known of the internal states."""
@@ -143,12 +154,16 @@ class System(eqx.Module):
         """What the effects see at one moment (their own internal states are filled in one by one)."""
         y, dy = state[0], state[1]
         z, dz = y - drive.x, dy - drive.dx
-        deflection, contact = self._deflection(t, z, side)
+        deflection, contact = self._deflection(t, z, drive.x, side)
         stiffness = jnp.zeros_like(z) if self.contact is None else self.contact.stiffness
         drifted: Any = 1.0
+        rubbed: Any = 1.0
         for name in sorted(self.effects):
-            drifted = drifted * self.effects[name].drift(t)
-        return Instant(t, y, dy, drive.x, drive.dx, z, dz, deflection, contact, stiffness, self.inertia, drifted=drifted)
+            drifted, rubbed = drifted * self.effects[name].drift(t), rubbed * self.effects[name].rubs(t)
+        return Instant(
+            t, y, dy, drive.x, drive.dx, z, dz, deflection, contact, stiffness, self.inertia, drifted=drifted,
+            damping=self.damper.damping, rubbed=rubbed, dseen=dy if self.observed == "y" else dz, side=side,
+        )  # fmt: skip
 
     def torques(self, now: Instant, state: State) -> tuple[Scalar, Scalar]:
         """All torque on the link but the driving force, and the part of it that acts through the joint [N m]."""
@@ -167,19 +182,19 @@ class System(eqx.Module):
         """Torque on the link of the joint without any effect [N m]."""
         return -now.stiffness * now.deflection - self.damper.damping * now.dz
 
-    def _play(self, t: Scalar) -> Play:
+    def _play(self, t: Scalar, x: Scalar) -> Play:
         assert isinstance(self.contact, Contact)
         play = Play(self.contact.backlash)
         for name in sorted(self.effects):
-            play = self.effects[name].reshape(play, t)
+            play = self.effects[name].reshape(play, t, x)
         return play
 
-    def _deflection(self, t: Scalar, z: Scalar, side: Scalar | None) -> tuple[Scalar, Scalar]:
+    def _deflection(self, t: Scalar, z: Scalar, x: Scalar, side: Scalar | None) -> tuple[Scalar, Scalar]:
         if self.contact is None:
             return jnp.zeros_like(z), jnp.zeros_like(z)
         if isinstance(self.contact, Spring):
             return z, jnp.ones_like(z)
-        low, high = self.edges(t)
+        low, high = self.edges(t, x)
         if side is not None:
             up, down = side > 0, side < 0
             deflection = jnp.where(up, z - high, jnp.where(down, z - low, 0.0))
@@ -197,8 +212,10 @@ class System(eqx.Module):
         return own
 
 
-def observe(effects: dict[str, AbstractEffect], value: Scalar) -> Scalar:
-    """What effects by name, those of the measuring chain, make of the channel that is measured."""
+def observe(effects: dict[str, AbstractEffect], value: Scalar, hidden: State = ()) -> Scalar:
+    """What effects by name, those of the measuring chain, make of the channel that is measured; ``hidden`` are their states."""
+    at = 0
     for name in sorted(effects):
-        value = effects[name].observe(value)
+        own = hidden[at : at + len(effects[name].states)]
+        value, at = effects[name].observe(value, own) if own else effects[name].observe(value), at + len(own)
     return value

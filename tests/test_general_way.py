@@ -126,6 +126,17 @@ GROUPS = {
     "loads": ("gravity", "preload", "torque_ripple", "gap_spring", "sensor_gain", "sensor_offset", "learned_torque"),
     "contact": ("asymmetric_gap", "asymmetric_stiffness", "cubic_stiffness", "contact_damping", "hunt_crossley", "gap_drift"),
     "friction": ("coulomb_joint", "coulomb_ground", "quadratic_drag", "stiffness_drift", "sensor_delay", "linear_gravity"),
+    "rigs": (
+        "transmission_error",
+        "load_friction",
+        "contact_exponent",
+        "damping_drift",
+        "friction_drift",
+        "clock_drift",
+        "relaxation",
+        "sensor_filter",
+        "disturbance",
+    ),
     "hidden states": ("dahl", "flexible_link", "stribeck"),
     "hysteresis": ("lugre", "bouc_wen"),
 }

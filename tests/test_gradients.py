@@ -15,8 +15,9 @@ from jaxbacklash.shooting.problem import Unknowns
 from jaxbacklash.shooting.windows import cut
 from jaxbacklash.simulation import as_record
 
-from .laws import LAWS
+from .laws import FORMS, LAWS
 
+EVERY = LAWS | FORMS
 HALF = 0.012
 # (z, dz): in the gap, in contact on each side, and close to each edge from both sides.
 POINTS = {
@@ -33,7 +34,7 @@ POINTS = {
 
 def joint(name, width=0.0):
     system = base_motion_joint(3.2, 2 * HALF, 12000.0, 20.0, width=width)
-    return system.with_effects(LAWS[name])
+    return system.with_effects(EVERY[name])
 
 
 def central(function, point, rel=1e-6):
@@ -56,7 +57,7 @@ def test_table_covers_the_catalogue():
 
 
 @pytest.mark.parametrize("width", [0.0, 5e-4], ids=["sharp", "smoothed"])
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", EVERY)
 def test_rates_in_parameters_and_state(name, width):
     system = joint(name, width)
     scale = np.maximum(np.abs(ravel(system)), 1e-3)
@@ -101,7 +102,7 @@ def record():
     return clean.replace(**noisy)
 
 
-@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("name", EVERY)
 def test_shooting_residual(name, record):
     """The Jacobian blocks of the multiple-shooting residual, every parameter, windows that cross both edges."""
     windows, _ = cut([record], 0.1)

@@ -16,7 +16,7 @@ from jaxbacklash.effects import CoulombGround, CoulombJoint, FlexibleLink
 from jaxbacklash.excitation import Harmonic
 from jaxbacklash.fitting.fit import prepare
 from jaxbacklash.fitting.setup import make_problem
-from jaxbacklash.mechanics import Drive
+from jaxbacklash.mechanics import Drive, canonical_name
 from jaxbacklash.models import base_motion_joint, free_axis, linear_oscillator
 from jaxbacklash.parameters import ravel, specs, unravel, values, with_values
 from jaxbacklash.records import Record
@@ -25,18 +25,19 @@ from jaxbacklash.shooting.problem import Unknowns
 from jaxbacklash.shooting.windows import cut
 from jaxbacklash.solvers import run_panels
 from tests.independent import kernel
-from tests.independent.generator import _COLUMNS, _GRID, _pieces, make_excitation, pack, simulate_truth
+from tests.independent.generator import _COLUMNS, _GRID, _pieces, make_excitation, pack, simulate_truth, start_of
 from tests.independent.motions import SteppedSine
 from tests.independent.rigs import Excitation, Rig
 
-from .laws import LAWS
+from .laws import FORMS, LAWS
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("numba") is None, reason="the generator needs numba")
 
 RIG = Rig(3.2, 0.024, 12000.0, 20.0)
 PANEL, LENGTH = 0.002, 50
 HIDDEN = {"dahl": (4, "Fc"), "lugre": (5, "Fc"), "bouc_wen": (6, "Fc")}  # column of the kernel's state, unit of ours
-DRY = ("coulomb_joint", "coulomb_ground", "stribeck")
+DRY = ("coulomb_joint", "coulomb_ground", "stribeck", "load_friction")
+EVERY = LAWS | FORMS
 
 MOTIONS = {
     "multisine": lambda: make_excitation(np.random.default_rng(4), "multisine"),
@@ -48,14 +49,16 @@ MOTIONS = {
 
 def truth(names, motion, duration):
     """States (n, kernel.STATES), base motion and its rate (n,) at the panel edges."""
-    effects = {name: {k: v for k, v in values(LAWS[name]).items() if k in _COLUMNS[name]} for name in names}
+    effects = {
+        canonical_name(law): {k: v for k, v in values(law).items() if k in _COLUMNS[canonical_name(law)]}
+        for law in (EVERY[name] for name in names)
+    }
     p = pack(RIG, effects)
     if motion.kind == "free_decay":
         p[kernel.TC], p[kernel.TG] = p[kernel.TC] + p[kernel.TG], 0.0
     t = PANEL * np.arange(round(duration / PANEL) + 1)
-    start = np.array([motion.y0, motion.v0, motion.y0, motion.v0, 0.0, 0.0, 0.0])
     pieces = _pieces(motion.base, t[-1]), _pieces(motion.force, t[-1])
-    states, _ = kernel.run(start, t, 2e-5, p, *pieces, _GRID)
+    states, _ = kernel.run(start_of(motion), t, 2e-5, p, *pieces, _GRID)
     x, dx, _ = motion.base.derivatives(t)
     return t, states, x, dx
 
@@ -66,6 +69,8 @@ def own_states(system, states):
     for name in sorted(system.effects):
         if name == "flexible_link":
             found += [states[:, 2], states[:, 3]]
+        elif name == "relaxation":
+            found.append(states[:, 7] / float(system.effects[name].kr * system.effects[name].tau_r))
         elif name in HIDDEN:
             column, level = HIDDEN[name]
             bristle = float(system.effects[name].sigma0) if name == "lugre" else 1.0
@@ -86,7 +91,7 @@ def window_errors(names, motion, duration=20.0):
     """Absolute errors of z at all panel edges of all windows [rad]."""
     t, states, x, dx = truth(names, motion, duration)
     system = base_motion_joint(RIG.inertia, RIG.backlash, RIG.stiffness, RIG.damping)
-    system = system.with_effects(*(LAWS[name] for name in names))
+    system = system.with_effects(*(EVERY[name] for name in names))
     count = (t.size - 1) // LENGTH
     first = LENGTH * np.arange(count)
     grid = first[:, None] + np.arange(LENGTH + 1)
@@ -97,7 +102,8 @@ def window_errors(names, motion, duration=20.0):
 
 CASES = [((name,), motion) for motion in MOTIONS for name in DRY]
 CASES += [(("coulomb_joint", "coulomb_ground"), motion) for motion in MOTIONS]
-CASES += [((name,), "multisine") for name in LAWS if name in _COLUMNS and name not in DRY]
+CASES += [((*names, "friction_drift"), "multisine") for names in (("coulomb_joint",), ("coulomb_ground",), ("dahl",))]
+CASES += [((name,), "multisine") for name in EVERY if canonical_name(EVERY[name]) in _COLUMNS and name not in DRY]
 
 
 @pytest.mark.parametrize(("names", "motion"), CASES, ids=["-".join([*names, motion]) for names, motion in CASES])
@@ -107,11 +113,14 @@ def test_windows_follow_the_generator(names, motion):
     assert np.quantile(error, 0.99) < 3e-6
 
 
-TOGETHER = tuple(n for n in LAWS if n in _COLUMNS and n not in (*DRY, *HIDDEN, "flexible_link"))
+TOGETHER = tuple(n for n in LAWS if n in _COLUMNS and n not in (*DRY, *HIDDEN, "flexible_link", "relaxation"))
 """Laws without friction and internal states: what one makes of the joint, the others must see."""
 
 
-@pytest.mark.parametrize("beside", [(), ("coulomb_joint", "coulomb_ground"), ("lugre", "flexible_link")], ids="-".join)
+BESIDE = ((), ("coulomb_joint", "coulomb_ground"), ("lugre", "flexible_link", "relaxation"))
+
+
+@pytest.mark.parametrize("beside", BESIDE, ids="-".join)
 def test_all_laws_together_follow_the_generator(beside):
     error = window_errors((*TOGETHER, *beside), MOTIONS["multisine"](), 10.0)
     assert np.median(error) < 1e-7
@@ -138,7 +147,7 @@ def test_a_link_that_sticks_does_not_creep():
     np.testing.assert_allclose(path.z, 0.0, atol=1e-14)
 
 
-STRENGTHS = {"coulomb_joint": ["Tc"], "coulomb_ground": ["Tc"], "stribeck": ["Tc", "Ts"]}
+STRENGTHS = {"coulomb_joint": ["Tc"], "coulomb_ground": ["Tc"], "stribeck": ["Tc", "Ts"], "load_friction": ["mu"]}
 
 
 @pytest.mark.parametrize("name", DRY)
@@ -220,3 +229,40 @@ def test_no_panel_holds_a_whole_crossing_of_the_play():
     assert layout.length == as_coarse.length
     assert worst(windows, layout.length) < 3e-6
     assert worst(coarse, layout.length) > 3e-5  # the same steps, at what is enough for a slow link
+
+
+def shown_error(effects, names, rate=500.0, duration=12.0):
+    """Error (S, M) of what a fit's windows of 0.2 s show of a record without noise, begun at the true states [rad]."""
+    excitation = MOTIONS["multisine"]()
+    made = simulate_truth(RIG, effects, excitation, rate, duration)
+    record = Record(made["t"], {"x": made["x"], "z": made["z_seen"]})
+    system = base_motion_joint(RIG.inertia, RIG.backlash, RIG.stiffness, RIG.damping)
+    system = system.with_effects(*(LAWS[name] for name in names))
+    windows, layout, _ = prepare(system, [record], 0.2)
+    first = layout.length * np.arange((record.samples - 1) // layout.length)
+    times = np.maximum(np.asarray(system.passed(made["t"][first], 0.0)[0]), 0.0)
+    states, _ = kernel.run(start_of(excitation), times, 2e-5, pack(RIG, effects), *pieces_of(excitation, times[-1]), _GRID)
+    problem = make_problem(system, windows, ("backlash",))
+    starts = np.zeros((len(system.state_names), np.shape(windows.t0)[0]))
+    starts[:2, : first.size] = states[:, 0], states[:, 1]
+    if "sensor_filter" in names:
+        behind = states[:, 0] - excitation.base.x(times) - states[:, 8]
+        starts[2, : first.size] = behind / float(LAWS["sensor_filter"].tau_f)
+    found = predictions(problem, Unknowns(np.zeros(1), jnp.asarray(starts), jnp.asarray(windows.coefficients))).motion
+    error = np.abs(np.asarray(found)[: first.size] - made["z_seen"][first[:, None] + np.arange(layout.length)])
+    return error[1:]  # what lags shows nothing new at first
+
+
+def pieces_of(excitation, duration):
+    return _pieces(excitation.base, duration), _pieces(excitation.force, duration)
+
+
+@pytest.mark.parametrize("name", ["clock_drift", "sensor_filter", "sensor_delay"])
+def test_what_the_measuring_chain_does_follows_the_generator(name):
+    """Alone, and beside dry friction that drifts and a disturbance, which go by the clock of the input."""
+    values_of = {n: {k: float(v) for k, v in values(LAWS[n]).items() if k != "width"} for n in LAWS if n != "learned_torque"}
+    for beside in ((), ("coulomb_joint", "friction_drift", "disturbance")):
+        names = (name, *beside)
+        error = shown_error({n: values_of[n] for n in names}, names)
+        assert np.median(error) < 1e-7
+        assert np.quantile(error, 0.99) < 3e-6

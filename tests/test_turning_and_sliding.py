@@ -68,7 +68,14 @@ def test_laws_that_do_nothing_in_a_joint_are_left_out_too():
             system = base.with_effects(LAWS[name])
             now = system.instant(1.0, (0.01, 0.3, *(0.01 for _ in law.states)), Drive(force=1.0))
             acts = float(LAWS[name].torque(now.seen_by(tuple(0.01 for _ in law.states)))) != 0.0
-            assert acts or law.lag is not jb.AbstractEffect.lag or law.observe is not jb.AbstractEffect.observe, name
+            silent = all(getattr(law, name) is getattr(jb.AbstractEffect, name) for name in ("lag", "observe", "rubs"))
+            assert acts or not silent, name
+
+
+def test_laws_are_alike_to_laws_of_the_catalogue():
+    for name, law in jb.catalogue().items():
+        assert set(law.alike) <= set(jb.catalogue()) - {name}, name
+        assert all(apart and apart[0].islower() for apart in law.alike.values()), name
 
 
 @pytest.mark.slow

@@ -78,7 +78,7 @@ class AbstractBowed(AbstractEffect):  # no other test is to find it in the catal
 
     beta: Scalar = param(unit="1/rad", null=0.0, scale=1.0)
 
-    def observe(self, value: Scalar) -> Scalar:
+    def observe(self, value: Scalar, state: tuple[Scalar, ...] = ()) -> Scalar:
         return value + self.beta * value**2
 
 

@@ -8,6 +8,7 @@ import re
 from pathlib import Path
 
 import jaxbacklash as jb
+from jaxbacklash.mechanics import told_apart
 
 ROOT = Path(__file__).resolve().parents[1]
 LAWS = Path(__file__).with_name("laws")
@@ -16,14 +17,21 @@ PORTS = {
     "play": "it changes the play", "sensor": "it changes what is measured",
 }  # fmt: skip
 GROUPS = {
-    "Loads on the link": ("gravity", "linear_gravity", "preload", "torque_ripple", "quadratic_drag"),
-    "Shape of the play and of the contact": ("gap_spring", "asymmetric_gap", "asymmetric_stiffness", "cubic_stiffness"),
-    "Wear and warming": ("gap_drift", "stiffness_drift"),
-    "Damping of the contact": ("contact_damping", "hunt_crossley"),
-    "Dry friction": ("coulomb_joint", "coulomb_ground", "stribeck"),
+    "Loads on the link": ("gravity", "linear_gravity", "preload", "torque_ripple", "disturbance", "quadratic_drag"),
+    "Shape of the play and of the contact": (
+        "gap_spring",
+        "asymmetric_gap",
+        "transmission_error",
+        "asymmetric_stiffness",
+        "cubic_stiffness",
+        "contact_exponent",
+    ),
+    "Wear and warming": ("gap_drift", "stiffness_drift", "damping_drift", "friction_drift"),
+    "Damping of the contact": ("contact_damping", "hunt_crossley", "relaxation"),
+    "Dry friction": ("coulomb_joint", "coulomb_ground", "stribeck", "load_friction"),
     "Friction that gives before it slips": ("dahl", "lugre", "bouc_wen"),
     "Structure": ("flexible_link",),
-    "The measuring chain": ("sensor_delay", "sensor_gain", "sensor_offset"),
+    "The measuring chain": ("sensor_delay", "clock_drift", "sensor_filter", "sensor_gain", "sensor_offset"),
     "A law from data": ("learned_torque",),
 }
 HEAD = """# Effects
@@ -67,12 +75,23 @@ def section(name: str, row: list[str], numbers: dict[str, float | None] | None) 
     if len(only) == 1:
         text.append(f"Only for a {only[0]} link: `refine` and `diagnose` do not propose it for any other.\n")
     text.append(parameters(name))
+    text.append(taken_for(name))
     picture = LAWS / f"{name}.svg"
     if picture.exists():
         text.append(f'<figure class="law">\n{picture.read_text(encoding="utf-8")}</figure>\n')
     if numbers:
         text.append(f'<p class="law-numbers">{left_over(numbers)}</p>\n')
     return "\n".join(text)
+
+
+def taken_for(name: str) -> str:
+    """For which laws a law is taken or which are taken for it, and what a record must hold to tell them apart."""
+    laws = jb.catalogue()
+    pairs = {other: apart for other in laws if (apart := told_apart(name, other)) is not None}
+    if not pairs:
+        return ""
+    rows = [f"| `{other}` | {apart} |" for other, apart in pairs.items()]
+    return "\n".join(["| is taken for, or taken instead of | to tell them apart a record needs |", "|---|---|", *rows]) + "\n"
 
 
 def parameters(name: str) -> str:
@@ -82,6 +101,8 @@ def parameters(name: str) -> str:
     for field in dataclasses.fields(law):
         if (spec := field.metadata.get("spec")) is not None:
             null = "none: it gives the law its shape" if spec.null is None else f"{spec.null:g}"
+            if spec.usual is not None:
+                null = f"none: held at {spec.usual:g} unless a model has another value"
             rows.append(f"| `{name}.{field.name}` | {spec.unit} | {'stated, never fitted' if spec.fixed else null} |")
     if not rows:
         return ""

@@ -52,14 +52,18 @@ class View:
 
 
 VIEWS = {
-    "asymmetric_stiffness": View(swing=1.4), "bouc_wen": View("dz"), "contact_damping": View("dz"),
+    "asymmetric_stiffness": View(swing=1.4), "bouc_wen": View("dz"), "clock_drift": View("t", 1.2), "contact_damping": View("dz"),
+    "contact_exponent": View(swing=1.8), "damping_drift": View("t"), "disturbance": View("t"), "friction_drift": View("t"),
+    "load_friction": View("dz", 1.4), "relaxation": View("dz"), "sensor_filter": View("dz", 1.2), "transmission_error": View("x"),
     "coulomb_ground": View("dy", 4.0, 3.0), "coulomb_joint": View("dz"), "cubic_stiffness": View(swing=1.8), "dahl": View("dz"),
     "flexible_link": View("y", 4.0, 1.0), "gap_drift": View("t"),
     "gravity": View("y", 4.0), "hunt_crossley": View("dz", 1.4), "linear_gravity": View("y", 4.0),
     "lugre": View("dz"), "preload": View("y", 4.0), "quadratic_drag": View("dy", 4.0, 3.0), "sensor_delay": View("dz", 1.2),
     "sensor_gain": View(swing=1.4), "stiffness_drift": View("t", 1.4), "stribeck": View("dz"), "torque_ripple": View("y", 6.0),
 }  # fmt: skip
-AXES = {"z": "z [deg]", "y": "y [deg]", "dz": "rate of z [rad/s]", "dy": "rate of y [rad/s]", "t": "time [s]"}
+BESIDE = {"friction_drift": {"coulomb_joint": LAWS["coulomb_joint"]}}
+"""Laws without which one does nothing."""
+AXES = {"z": "z [deg]", "x": "x [deg]", "y": "y [deg]", "dz": "rate of z [rad/s]", "dy": "rate of y [rad/s]", "t": "time [s]"}
 
 
 def main(names: Sequence[str] = ()) -> None:
@@ -77,13 +81,14 @@ def main(names: Sequence[str] = ()) -> None:
 
 def shown(name: str, law: jb.AbstractEffect) -> tuple[dict[str, Any], Figure]:
     """What the base model makes of a joint with this law, and the picture of it."""
-    view, system = VIEWS.get(name, View()), jb.base_motion_joint(**JOINT).with_effects(law)
+    view, joint = VIEWS.get(name, View()), jb.base_motion_joint(**JOINT).with_effects(*BESIDE.get(name, {}).values())
+    system = joint.with_effects(law)
     motion, record = measured(system)
-    fit = jb.fit(record, inertia=JOINT["inertia"], starts=1)
+    fit = jb.fit(record, inertia=JOINT["inertia"], effects=list(joint.effects), starts=1)
     told = {one: fit.parameters[one].value for one in ("backlash", "stiffness", "damping")}
     figure = Figure(figsize=(7.2, 2.5), layout="constrained")
     left, right = figure.subplots(1, 2)
-    draw_restoring(left, system, law, view)
+    draw_restoring(left, joint, system, law, view)
     draw_missing(right, system, fit.system, motion, record, view)
     left_over = {"rms_over_noise": float(f"{fit.score.rms:.3g}")}
     return left_over | {one: shift(value, JOINT[one]) for one, value in told.items()}, figure
@@ -98,14 +103,14 @@ def measured(system: jb.System) -> tuple[jb.Trajectory, jb.Record]:
     """The motion of the joint under the demo's base motion, and what encoders would make of it."""
     motion = jb.simulate(system, jb.measured_base(jb.demo_records()[0]), duration=SECONDS)
     t, x, z = (np.asarray(row) for row in (motion.t, motion.x, motion.observed))
-    if (lag := system.lag()) is not None:
-        z = CubicSpline(t, z)(np.maximum(t - float(lag), t[0]))
+    if (lag := system.lag(t)) is not None:
+        z = CubicSpline(t, z)(np.maximum(t - np.asarray(lag), t[0]))
     rng = np.random.default_rng(0)
     channels = {name: row + NOISE * rng.standard_normal(t.size) for name, row in (("x", x), ("z", z))}
     return motion, jb.Record(t, channels, confirmed=frozenset({"t", "x", "z"}))
 
 
-def draw_restoring(ax: Any, system: jb.System, law: jb.AbstractEffect, view: View) -> None:
+def draw_restoring(ax: Any, joint: jb.System, system: jb.System, law: jb.AbstractEffect, view: View) -> None:
     """Restoring torque, damper left out, through cycles of one size, grey without the law.
 
     Over z as it is measured, at a base at rest; of a law between link and ground over y, the joint in the middle of its play.
@@ -116,11 +121,10 @@ def draw_restoring(ax: Any, system: jb.System, law: jb.AbstractEffect, view: Vie
     omega, amplitude = 2.0 * np.pi * hertz, np.radians(view.swing)
     angle, speed = amplitude * np.sin(omega * t), amplitude * omega * np.cos(omega * t)
     cycles = [slice(2000 * n, 2000 * n + 2001, 20) for n in ((0, 4, 9) if drifts else (9,))]
-    for of, look in ((jb.base_motion_joint(**JOINT), {"color": GAP, "lw": 2.6}), (system, {"color": MODEL, "lw": 1.3})):
-        torque = held(of, t, angle, speed, ground)
-        over = np.asarray(of.observe(jnp.asarray(angle)))
-        if (lag := of.lag()) is not None:
-            over = amplitude * np.sin(omega * (t - float(lag)))
+    for of, look in ((joint, {"color": GAP, "lw": 2.6}), (system, {"color": MODEL, "lw": 1.3})):
+        torque, over = held(of, t, angle, speed, ground)
+        if (lag := of.lag(t)) is not None:
+            over = amplitude * np.sin(omega * (t - np.asarray(lag)))
         for number, rows in enumerate(cycles):
             label = None if number else "with it" if of is system else "without"
             ax.plot(np.degrees(over)[rows], torque[rows], label=label, **look)
@@ -131,8 +135,8 @@ def draw_restoring(ax: Any, system: jb.System, law: jb.AbstractEffect, view: Vie
     ax.legend(frameon=False, fontsize=8, loc="upper left", handlelength=1.2, ncols=2)
 
 
-def held(system: jb.System, t: np.ndarray, angle: np.ndarray, speed: np.ndarray, ground: bool) -> np.ndarray:
-    """Restoring torque, damper left out, of a link that is led, hidden states followed, (N,) [N m].
+def held(system: jb.System, t: np.ndarray, angle: np.ndarray, speed: np.ndarray, ground: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Restoring torque, damper left out, of a link that is led, hidden states followed, (N,) [N m], and the angle as measured.
 
     It follows ``angle`` and ``speed`` [rad, rad/s] at a base at rest, or, for ``ground``, together with the base.
     """
@@ -146,22 +150,23 @@ def held(system: jb.System, t: np.ndarray, angle: np.ndarray, speed: np.ndarray,
         state, driven = (at, rate, *hidden), drive(at, rate)
         total, _ = system.torques(system.instant(time, state, driven), state)
         rates = system.rates(time, state, driven)[2:]
-        return tuple(s + step * change for s, change in zip(hidden, rates)), -total
+        return tuple(s + step * change for s, change in zip(hidden, rates)), (-total, system.observe(at, hidden))
 
     rows = tuple(jnp.asarray(row) for row in (t, angle, speed))
     begin = system.rest(*(row[0] for row in rows), drive(rows[1][0], rows[2][0]))[2:]
-    torque = np.asarray(jax.lax.scan(advance, tuple(begin), rows)[1])
-    return torque if ground else torque - JOINT["damping"] * speed
+    torque, shown = (np.asarray(row) for row in jax.lax.scan(advance, tuple(begin), rows)[1])
+    return torque if ground else torque - JOINT["damping"] * speed, shown
 
 
 def draw_missing(ax: Any, true: jb.System, fitted: jb.System, motion: jb.Trajectory, record: jb.Record, view: View) -> None:
     """The torque that the fitted model misses along the motion, as dots over what it depends on."""
     t, x, y, dy = (np.asarray(row) for row in (motion.t, motion.x, motion.y, motion.dy))
     dx = CubicSpline(t, x)(t, 1)
-    seen = np.asarray(motion.observed) if true.lag() is None else CubicSpline(t, y - x)(np.maximum(t - float(true.lag()), 0.0))
+    lag = true.lag(t)
+    seen = np.asarray(motion.observed) if lag is None else CubicSpline(t, y - x)(np.maximum(t - np.asarray(lag), 0.0))
     exact = JOINT["inertia"] * CubicSpline(t, dy)(t, 1)
     model = along(fitted, t, x + seen, dx + CubicSpline(t, seen)(t, 1), x, dx).torque
-    over = {"z": np.degrees(seen), "y": np.degrees(y), "dz": dy - dx, "dy": dy, "t": t}[view.over]
+    over = {"z": np.degrees(seen), "y": np.degrees(y), "dz": dy - dx, "dy": dy, "t": t, "x": np.degrees(x)}[view.over]
     rows = np.linspace(20, t.size - 20, POINTS).astype(int)
     missing = (exact - model)[rows]
     ax.axhline(0.0, color=GAP, lw=0.8)

@@ -92,7 +92,7 @@ class Delay(Kind):
 
 
 class Clock(Kind):
-    """The clock of the measured channel runs slow by a share of the other's: it is late by so much of the time passed."""
+    """The clock of the measured channel runs fast by a share of the other's: it is late by so much of the time passed."""
 
     name, far = "clock", False
 

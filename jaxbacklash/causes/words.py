@@ -49,14 +49,14 @@ def _delay(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str,
 def _clock(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str, str, str]:
     other = fit.records[0].input_name
     spread = f" +- {1e6 * error:.2g}" if error else ""
-    way = "slow" if size > 0 else "fast"
+    way = "fast" if size > 0 else "slow"
     parts = number(1e6 * abs(size), 1e6 * error if error else None)
     end = size * (fit.records[0].t[-1] - fit.records[0].t[0])
     words = (
         f"the clock of {kind.channel} runs {way} by {parts}{spread} ppm against that of {other} "
         f"({1e3 * abs(end):.2g} ms at the end)"
     )
-    return words, "", ""
+    return words, ("" if kind.mixed else "--effects clock_drift"), ("" if kind.mixed else "clock_drift")
 
 
 def _scale(kind: Kind, size: float, error: float | None, fit: Fit) -> tuple[str, str, str]:

@@ -25,7 +25,7 @@ from .law_errors import line_in, named
 
 PORTS = ("joint", "ground")
 UNKNOWN = "numbers that are not known while the law is compiled"
-METHODS = ("torque", "dry", "rate", "start", "reshape", "drift", "observe", "lag")
+METHODS = ("torque", "dry", "rate", "start", "reshape", "drift", "rubs", "observe", "lag")
 """What a law may override, all of it traced."""
 MOMENTS = np.array([  # t [s], y, dy, x, dx [rad, rad/s]: on both sides of the play, in it, fast and slow; the last one at rest
     [0.13, 0.031, 0.9, 0.004, -0.3], [0.77, -0.027, -1.7, 0.006, 0.2], [1.9, 0.003, 0.11, 0.001, 0.05],
@@ -108,7 +108,9 @@ def _call(effect: AbstractEffect, joint: System, method: str, numbers: Any) -> A
     t, y, dy, x, dx = (numbers[i] for i in range(5))
     hidden = tuple(jnp.zeros_like(y) for _ in effect.states)
     now = joint.instant(t, (y, dy), Drive(x, dx, jnp.zeros_like(y), jnp.zeros_like(y)), None).seen_by(hidden)
-    arguments = {"reshape": (Play(joint.contact.backlash), t), "drift": (t,), "observe": (now.z,), "lag": ()}  # type: ignore[union-attr]
+    play = Play(joint.contact.backlash)  # type: ignore[union-attr]
+    seen = (now.z, hidden) if hidden else (now.z,)
+    arguments = {"reshape": (play, t, x), "drift": (t,), "rubs": (t,), "observe": seen, "lag": (t,)}
     return getattr(effect, method)(*arguments.get(method, (now,)))
 
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..mechanics import AbstractEffect
 from ..parameters import free_specs, specs, with_values
+from ..regression.spectrum import read_off
 from .fitted_model import FittedModel
 from .model_builder import ModelBuilder, strengths, width
 
@@ -62,12 +63,18 @@ def share_of_rest(model: FittedModel, gain: float) -> float:
 
 def rubs(law: type[AbstractEffect]) -> bool:
     """Whether a law is friction in the joint, dry or one that gives."""
-    return bool(law.states and law.family) or (law.slides and law.port == "joint")
+    return bool(law.states and law.family) or (law.slides and law.port == "joint" and not law.beside)
 
 
 def shaped(builder: ModelBuilder, model: FittedModel, name: str) -> AbstractEffect:
     """The law at its null strength, at the likeliest of the shapes it may have."""
-    guesses = builder.laws[name].guesses(model.system, builder.weak_form.motion)
+    law, form = builder.laws[name], builder.weak_form
+    if law.wave is None or form.blind:
+        guesses = law.guesses(model.system, form.motion)
+    else:
+        guesses = [read_off(form, model.system, model.free, law)]
+        if specs(guesses[0])[law.wave.phase].usual is not None:
+            guesses = [law(**{law.wave.strength: 1.0}), *guesses]
     return null(builder.weak_form.choose(model.system, model.free, guesses)[0])
 
 

@@ -47,8 +47,8 @@ def leaves_noise(model: FittedModel) -> bool:
 
 
 def measures_only(law: type[AbstractEffect]) -> bool:
-    """True for what happens in the measuring chain, which exerts no torque and leaves the play alone."""
-    return law.torque is AbstractEffect.torque and law.reshape is AbstractEffect.reshape
+    """True for what happens in the measuring chain, which changes nothing of the motion itself."""
+    return law.observe is not AbstractEffect.observe or law.lag is not AbstractEffect.lag
 
 
 def standard_errors(model: FittedModel) -> np.ndarray:

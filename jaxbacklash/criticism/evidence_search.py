@@ -18,7 +18,7 @@ from .candidates import Candidate, share_of_rest
 from .evidence import demanded, leaves_noise, noise_too_large
 from .fitted_model import FittedModel
 from .model_fitter import ExhaustedError, ModelFitter
-from .moves import Neighbour, with_law, with_simpler_law, without_law
+from .moves import Neighbour, in_other_forms, with_law, with_simpler_law, without_law
 from .screening import net_gain, screen
 from .steps import SearchStep
 
@@ -67,6 +67,8 @@ class EvidenceSearch:
         model = self.clear(model)
         self._note_ranking()
         model = self.fitter.sharpened(model)
+        for neighbour in in_other_forms(self.fitter, model, sorted(model.names)):
+            model = self._fitted(neighbour, model)
         self.path[-1] = replace(self.path[-1], model=model)
         if noise_too_large(model) and (factor := self.fitter.too_loud(model)) != 1.0:
             self.fitter.quieter(factor)
@@ -98,12 +100,16 @@ class EvidenceSearch:
         ):  # fmt: skip
             found: FittedModel | None = None
             for neighbour in move(model):
-                fitted = self.fitter.fit_model(neighbour.effects, model, neighbour.joint)
+                fitted = self._fitted(neighbour, model)
                 found = fitted if found is None else self.likelier(model, found, fitted)
             if found is not None and self.evidence(model, found) > least:
                 self._step(model, found)
                 return found
         return None
+
+    def _fitted(self, neighbour: Neighbour, model: FittedModel) -> FittedModel:
+        near = neighbour.near
+        return self.fitter.fit_model(neighbour.effects, near or model, neighbour.joint, again=near is not None)
 
     @property
     def demand(self) -> float:
@@ -166,6 +172,8 @@ class EvidenceSearch:
                 break
             yield beside[candidate.name]
             fitted = self.fitter.fitted[beside[candidate.name].names]
+            yield from in_other_forms(self.fitter, fitted, [candidate.name])
+            fitted = self.fitter.fitted[fitted.names]
             if leaves_noise(fitted) and self.evidence(model, fitted) > self.demand:
                 enough = max(enough, net_gain(candidate, self.fitter))
 

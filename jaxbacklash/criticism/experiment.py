@@ -7,7 +7,7 @@ parameters counts for both.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import jax
@@ -17,6 +17,7 @@ from ..errors import BadInput
 from ..excitation import SteppedSine
 from ..fitting.score import score
 from ..fitting.setup import first_guess
+from ..mechanics import told_apart
 from ..records import Record
 from ..simulation import measured_base, simulate
 from ..system import System
@@ -65,16 +66,25 @@ class Experiment:
 
     def __str__(self) -> str:
         best, kept, rival = self.best, " + ".join(self.kept), " + ".join(self.rival)
+        beside = needed(self.kept, self.rival)
         if not self.parts:
             return (
                 f"No sine within what this rig has done here separates {rival} from {kept} in {self.seconds:g} s: "
                 f"at best {rival} would miss by {best.misfit:.3f} times what {kept} does."
-            )
+            ) + beside
         return (
             f"To tell {rival} from {kept}: let a sine of {best.frequency:.3g} Hz grow from rest to {best.amplitude:.3g} "
             f"{self.unit} in {self.drive} and hold it for {self.seconds:g} s; {rival} would then miss by {best.misfit:.3g} times "
             f"what {kept} does."
-        )
+        ) + beside
+
+
+def needed(kept: Iterable[str], rival: Iterable[str]) -> str:
+    """What a record must hold to tell two sets of effects apart, as far as the laws say so: sentences, each after a space."""
+    kept, rival = set(kept), set(rival)
+    both = [(a, b) for a in sorted(kept - rival) for b in sorted(rival - kept)]
+    pairs = [(a, b, apart) for a, b in both if (apart := told_apart(a, b)) is not None]
+    return "".join(f" To tell {b} from {a} a record needs {apart}." for a, b, apart in pairs)
 
 
 def separate(builder: ModelBuilder, kept: FittedModel, rival: FittedModel, *, translational: bool = False) -> Experiment | None:
@@ -140,11 +150,13 @@ def measured_twin(model: System, builder: ModelBuilder, amplitude: float, freque
     drive = SteppedSine(np.array([0.0, amplitude]), np.full(2, frequency), SECONDS, as_force=forced)
     begin = 0.95 * SECONDS
     path = simulate(model, drive, duration=SECONDS, rate=record.rate_hz, t0=begin)
-    lag = model.lag()
+    times = np.asarray(path.t) - begin
+    lag = model.lag(times)
     # A channel that lags shows the motion under an equally late drive, which has gone on meanwhile.
-    seen = jax.vmap(drive.signal)(path.t + (0.0 if lag is None else lag))
+    late = np.broadcast_to(0.0 if lag is None else np.asarray(lag), times.shape)
+    seen = jax.vmap(drive.signal)(path.t + late)
     channels = {
         "F" if forced else "x": np.asarray(seen) + builder.layout.input_noise[0] * rng.standard_normal(path.t.size),
         record.observed_name: np.asarray(path.observed) + builder.layout.noise[0] * rng.standard_normal(path.t.size),
     }
-    return Record(np.asarray(path.t) - begin, channels, "the twin of an experiment", confirmed=frozenset({"t", "x", "y", "z"}))
+    return Record(times + late - late[0], channels, "the twin of an experiment", confirmed=frozenset({"t", "x", "y", "z"}))

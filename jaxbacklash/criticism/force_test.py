@@ -7,12 +7,15 @@ parabola of that share: its lowest point says what the law brings, and at what s
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import equinox as eqx
 import numpy as np
 
 from ..fitting.continuation import SHARP, tied
 from ..mechanics import AbstractEffect
-from ..regression.along_motion import motion, own_torques
+from ..regression.along_motion import motion, own_states, own_torques
 from ..shooting.problem import Unknowns
 from .fitted_model import FittedModel
 from .model_fitter import ModelFitter
@@ -49,17 +52,35 @@ class ForceTest:
         gain, size = found[best]
         return gain, shapes[best].scaled(size) if gain > 0.0 and not instead else shapes[best]
 
+    def best_shown(self, shapes: list[AbstractEffect]) -> tuple[float, AbstractEffect]:
+        """The same of a law of the measuring chain, which shows the motion otherwise."""
+        at_samples = self.edges[:, : -1 : self.problem.windows.every]
+        along = self.along.y - self.along.x if self.system.observed == "z" else self.along.y
+        shown = [np.asarray(shape.observe(along, own_states(shape, self.system, self.along))) for shape in shapes]
+        shifts = [np.interp(at_samples, self.along.t, s - along) for s in shown]
+        falls = [self._lowest(partial(self._shown, shift))[0] for shift in shifts]
+        best = max(range(len(shapes)), key=lambda k: falls[k])
+        return falls[best], shapes[best]
+
     def fall(self, torque: np.ndarray) -> tuple[float, float]:
         """What a torque (N,) [N m] along the motion brings at its best size, and that size; nothing where it is below zero."""
         torque = np.interp(self.edges, self.along.t, torque)
-        once = self._answer(SHARE * torque)
+        return self._lowest(partial(self._answer, torque))
+
+    def _lowest(self, rise: Callable[[float], float]) -> tuple[float, float]:
+        once = rise(SHARE)
         if not once < 0.0:
             return 0.0, 1.0  # less than half of that share is best, if any
-        slope, curvature = parabola(once, self._answer(2.0 * SHARE * torque), SHARE)
+        slope, curvature = parabola(once, rise(2.0 * SHARE), SHARE)
         if not (np.isfinite(curvature) and curvature > 0.0 and slope < 0.0):
             return 0.0, 1.0
         return slope**2 / curvature, -slope / curvature
 
-    def _answer(self, torque: np.ndarray) -> float:
-        problem = eqx.tree_at(lambda p: p.windows.force, self.problem, self.applied + torque)
+    def _answer(self, torque: np.ndarray, share: float) -> float:
+        problem = eqx.tree_at(lambda p: p.windows.force, self.problem, self.applied + share * torque)
+        return answered(problem, self.unknowns)[0] - self.still
+
+    def _shown(self, shift: np.ndarray, share: float) -> float:
+        measured = np.asarray(self.problem.windows.measured) - share * shift
+        problem = eqx.tree_at(lambda p: p.windows.measured, self.problem, measured)
         return answered(problem, self.unknowns)[0] - self.still

@@ -6,7 +6,7 @@ simpler one takes its place. `evidence_search` says which moves are tried; `mode
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from ..mechanics import AbstractEffect, canonical_name
@@ -22,11 +22,13 @@ class Neighbour:
     """A model one move away from another, not yet fitted.
 
     ``effects`` by canonical name, at the values to start from; ``joint``, a system with the joint's values to start from, None
-    for those of the model that it is a neighbour of.
+    for those of the model that it is a neighbour of; ``near``, another fitted model of the same laws to start from, which is kept
+    where it is the better one.
     """
 
     effects: dict[str, AbstractEffect]
     joint: System | None = None
+    near: FittedModel | None = None
 
     @property
     def names(self) -> frozenset[str]:
@@ -48,6 +50,13 @@ def with_law(fitter: ModelFitter, model: FittedModel, candidate: Candidate) -> N
     effects = {n: e for n, e in fitter.effects(model).items() if n not in gone} | {candidate.name: candidate.effect}
     # A law that remembers was tuned together with the model's own parameters.
     return Neighbour(effects, with_values(model.system, candidate.moved) if candidate.effect.states else None)
+
+
+def in_other_forms(fitter: ModelFitter, model: FittedModel, names: Iterable[str]) -> Iterator[Neighbour]:
+    """A fitted model with some of its laws in their other forms, one at a time: the same laws by name."""
+    for name in names:
+        for form in fitter.effects(model)[name].forms():
+            yield Neighbour({**fitter.effects(model), name: form}, near=model)
 
 
 def without_law(fitter: ModelFitter, model: FittedModel, name: str) -> Neighbour:

@@ -13,7 +13,7 @@ from ..fitting.result import DOUBTED, at_most, doubt
 from ..frames import dataframe, known
 from ..parameters import channel_unit
 from ..showing import Shown
-from .experiment import Experiment
+from .experiment import Experiment, needed
 from .ranking import of_stage, table
 from .steps import Stage
 from .verdict import Verdict
@@ -148,7 +148,10 @@ def alternatives_sentence(refinement: Refinement) -> str:
     other = "; or ".join(" + ".join(names) for names in refinement.alternatives)
     allow = "standard errors" if doubted(refinement) else "intervals"
     said = f"This record cannot tell {' + '.join(refinement.effects)} from: {other}; the {allow} allow for either."
-    return " ".join([said, *(map(str, refinement.experiments) if refinement.experiments else ["Another excitation may."])])
+    tried = {experiment.rival for experiment in refinement.experiments}
+    apart = "".join(needed(refinement.effects, names) for names in refinement.alternatives if names not in tried)
+    proposed = [*map(str, refinement.experiments)] or ([] if apart else ["Another excitation may."])
+    return " ".join([said, *proposed]) + apart
 
 
 def _stages(stages: tuple[Stage, ...]) -> list[str]:

@@ -23,6 +23,7 @@ from ..parameters import free_specs, values
 from ..regression.tuning import tune
 from ..system import System
 from .candidates import Candidate, score_test, share_of_rest
+from .evidence import measures_only
 from .fitted_model import FittedModel
 from .force_test import ForceTest
 from .model_fitter import ModelFitter
@@ -75,14 +76,20 @@ def _remembering(fitter: ModelFitter, model: FittedModel, absent: Sequence[str],
         gone = give_way(fitter, model, name)
         system, free = _without(model, gone)
         shapes = fitter.laws[name].guesses(system, form.motion)
-        if form.evidence(system, free, shapes) <= SEEN:
+        moved: dict[str, float] = {}
+        if measures_only(fitter.laws[name]):
+            test = test or ForceTest(fitter, model)
+            gain, effect = test.best_shown(shapes)
+        elif form.evidence(system, free, shapes) <= SEEN:
             continue  # what promises nothing at any of the shapes it is begun with is not tuned
-        test = test or ForceTest(fitter, model)
-        tuned = tune(form, system, free, shapes)
-        near = [n for law in tuned.effect.simpler() if (n := canonical_name(type(law))) in fitter.laws]
-        gain, effect = test.best([tuned.effect] if near else [*shapes, tuned.effect], [model.system.effects[n] for n in gone])
+        else:
+            test = test or ForceTest(fitter, model)
+            tuned = tune(form, system, free, shapes)
+            others = [tuned.effect] if tuned.effect.simpler() else [*shapes, tuned.effect]
+            gain, effect = test.best(others, [model.system.effects[n] for n in gone])
+            moved = {n: v for n, v in values(tuned.system).items() if n in free}
+        near = [n for law in effect.simpler() if (n := canonical_name(type(law))) in fitter.laws]
         less = sum(len(free_specs(model.system.effects[n])) for n in gone) * float(np.log(fitter.record.samples))
-        moved = {n: v for n, v in values(tuned.system).items() if n in free}
         candidate = Candidate(name, effect, gain / model.deflation + less, share_of_rest(model, gain), moved)
         if net_gain(candidate, fitter) > max((promised[n] for n in near if n in promised), default=-np.inf):
             found.append(candidate)

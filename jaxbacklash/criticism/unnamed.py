@@ -15,6 +15,7 @@ import numpy as np
 
 from ..pointwise import along
 from ..regression.along_motion import Motion
+from ..regression.spectrum import highest_line
 from ..regression.weak_form import WeakForm, whitener
 from ..shooting.levenberg import Levenberg, minimise
 from ..system import System
@@ -156,9 +157,7 @@ def products(system: System, m: Motion) -> dict[str, np.ndarray]:
     }
 
 
-def rhythm(
-    form: WeakForm, rest: np.ndarray, white: Callable[[np.ndarray], np.ndarray], *, periods: int = 3, passed: float = 0.2
-) -> tuple[float, np.ndarray]:
+def rhythm(form: WeakForm, rest: np.ndarray, white: Callable[[np.ndarray], np.ndarray]) -> tuple[float, np.ndarray]:
     """The sine that is likeliest in what is left: its frequency [Hz], and its torque (N,) at the likeliest phase.
 
     Parameters
@@ -166,14 +165,8 @@ def rhythm(
     form : of the record
     rest : (R,) what is left under the bumps, whitened
     white : the filter that whitened it
-    periods : in the record at least; what is slower goes with a drift
-    passed : share of the sine that the bumps let pass at least; of what is faster they leave noise
     """
-    # A sine between two frequencies of a spectrum padded to four times its length loses 1 - sinc(1/8)^2, 5 % of its power.
-    padded = 4 * rest.size
-    spectrum, hertz = np.abs(np.fft.rfft(rest, padded)) ** 2, np.fft.rfftfreq(padded, form.spacing)
-    known = (hertz >= periods / (rest.size * form.spacing)) & (form.passes(hertz) > passed)
-    best = float(hertz[np.argmax(np.where(known, spectrum, -1.0))])
+    best = highest_line(form, rest)[0]
     angle = 2.0 * np.pi * best * (form.motion.t - form.motion.t[0])
     pair = np.stack([np.cos(angle), np.sin(angle)])
     return best, np.linalg.lstsq(white(form.average(pair).T), rest, rcond=None)[0] @ pair

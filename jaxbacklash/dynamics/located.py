@@ -53,7 +53,7 @@ def fastest(system: System) -> float:
 def _slopes(system: System) -> Array:
     def one(system: System) -> Array:
         t = jnp.zeros(())
-        edge = system.edges(t) if system.has_play else (0.0, 0.0)
+        edge = system.edges(t, 0.0 * t) if system.has_play else (0.0, 0.0)
         z = edge[1] + 0.5 * (edge[1] - edge[0])
         side = jnp.ones(()) if system.has_play else None
         drive = Drive(0.0 * t, 0.0 * t, 0.0 * t)

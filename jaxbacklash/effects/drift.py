@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import ClassVar
 
+import jax.numpy as jnp
+
 from ..mechanics import AbstractEffect, Instant, Play
 from ..parameters import Scalar, param
 
@@ -15,7 +17,7 @@ class GapDrift(AbstractEffect):
 
     r: Scalar = param(unit="1/s", null=0.0, scale=1e-3)
 
-    def reshape(self, play: Play, t: Scalar) -> Play:
+    def reshape(self, play: Play, t: Scalar, x: Scalar) -> Play:
         return Play(play.backlash * (1.0 + self.r * t), play.centre)
 
 
@@ -31,3 +33,31 @@ class StiffnessDrift(AbstractEffect):
 
     def torque(self, now: Instant) -> Scalar:
         return -(self.r * now.t) * (now.stiffness * now.deflection)
+
+
+class DampingDrift(AbstractEffect):
+    r"""The damping drifts, :math:`c(t) = c\,(1 + r t)`, so :math:`T = -c r t\,\dot z` beside the damper."""
+
+    alike: ClassVar[dict[str, str]] = {
+        "friction_drift": "swings of several sizes, early and late: friction takes from small ones more",
+        "stiffness_drift": "free swings, early and late: their period or their decay changes",
+    }
+
+    r: Scalar = param(unit="1/s", null=0.0, scale=1e-3)
+
+    def torque(self, now: Instant) -> Scalar:
+        return -(self.r * now.t) * (now.damping * now.dz)
+
+
+class FrictionDrift(AbstractEffect):
+    r"""Dry friction drifts, whichever there is: all of it is :math:`1 + r t` times what its laws state, and never below zero.
+
+    Only beside a law of dry friction does it anything.
+    """
+
+    alike: ClassVar[dict[str, str]] = {"damping_drift": DampingDrift.alike["friction_drift"]}
+
+    r: Scalar = param(unit="1/s", null=0.0, scale=1e-3)
+
+    def rubs(self, t: Scalar) -> Scalar:
+        return jnp.maximum(1.0 + self.r * t, 0.0)

@@ -40,7 +40,7 @@ class CoulombJoint(AbstractEffect):
     joints: ClassVar[tuple[str, ...]] = ("play", "spring")
 
     def dry(self, now: Instant) -> Scalar:
-        return self.Tc * jnp.ones_like(now.dz)
+        return self.Tc * now.rubbed * jnp.ones_like(now.dz)
 
     def torque(self, now: Instant) -> Scalar:
         return -self.dry(now) * direction(now.dz, now.slip_z, self.width)
@@ -55,7 +55,7 @@ class CoulombGround(AbstractEffect):
     slides: ClassVar[bool] = True
 
     def dry(self, now: Instant) -> Scalar:
-        return self.Tc * jnp.ones_like(now.dy)
+        return self.Tc * now.rubbed * jnp.ones_like(now.dy)
 
     def torque(self, now: Instant) -> Scalar:
         return -self.dry(now) * direction(now.dy, now.slip_y, self.width)
@@ -81,7 +81,31 @@ class Stribeck(AbstractEffect):
         return [cls(1.0, 2.0, vs) for vs in sliding_speeds(motion)]
 
     def dry(self, now: Instant) -> Scalar:
-        return self.Tc + (self.Ts - self.Tc) * jnp.exp(-((now.dz / jnp.maximum(self.vs, 1e-6)) ** 2))
+        curve = self.Tc + (self.Ts - self.Tc) * jnp.exp(-((now.dz / jnp.maximum(self.vs, 1e-6)) ** 2))
+        return now.rubbed * curve
+
+    def torque(self, now: Instant) -> Scalar:
+        return -self.dry(now) * direction(now.dz, now.slip_z, self.width)
+
+
+class LoadFriction(AbstractEffect):
+    r"""Dry friction of a mesh, as large as the load makes it: :math:`T = -\mu |k \delta|\,\mathrm{sgn}(\dot z)`."""
+
+    alike: ClassVar[dict[str, str]] = {
+        "coulomb_joint": "motion inside the play, where a mesh that carries nothing does not rub",
+        "stribeck": "motion inside the play, where a mesh that carries nothing does not rub",
+        "hunt_crossley": "contacts as deep at several speeds: friction does not grow with the speed",
+        "contact_damping": "contacts as deep at several speeds: friction does not grow with the speed",
+    }
+
+    mu: Scalar = param(unit="1", null=0.0, lower=0.0, upper=1.0, scale=0.1)
+    width: Scalar = param(unit="rad/s", default=1e-3, lower=0.0, fixed=True, label="regularisation of the sign")
+    slides: ClassVar[bool] = True
+    beside: ClassVar[bool] = True
+    joints: ClassVar[tuple[str, ...]] = ("play", "spring")
+
+    def dry(self, now: Instant) -> Scalar:
+        return self.mu * now.rubbed * jnp.abs(now.stiffness * now.drifted * now.deflection)
 
     def torque(self, now: Instant) -> Scalar:
         return -self.dry(now) * direction(now.dz, now.slip_z, self.width)

@@ -45,7 +45,7 @@ class Dahl(AbstractEffect):
         return [CoulombJoint(self.Fc), CoulombGround(self.Fc)]
 
     def torque(self, now: Instant) -> Scalar:
-        return -self.Fc * now.state[0]
+        return -self.Fc * now.rubbed * now.state[0]
 
     def rate(self, now: Instant) -> tuple[Scalar, ...]:
         flow = _flow(now.dz, self.sigma, self.Fc)
@@ -99,7 +99,7 @@ class Lugre(AbstractEffect):
     def torque(self, now: Instant) -> Scalar:
         # The state is sigma0 s / Fc.
         damped = (self.sigma1 / jnp.maximum(self.sigma0, 1e-6)) * self.rate(now)[0]
-        return -self.Fc * (now.state[0] + damped) - self.sigma2 * now.dz
+        return -self.Fc * now.rubbed * (now.state[0] + damped) - self.sigma2 * now.dz
 
     def rate(self, now: Instant) -> tuple[Scalar, ...]:
         # Below Fc as well as above: a bound at Fs = Fc would hide from a fit that crossed it which way leads back.
@@ -135,7 +135,7 @@ class BoucWen(AbstractEffect):
         return [CoulombJoint(self.Fc), CoulombGround(self.Fc), Dahl(self.Fc, self.sigma)]
 
     def torque(self, now: Instant) -> Scalar:
-        return -self.Fc * now.state[0]
+        return -self.Fc * now.rubbed * now.state[0]
 
     def rate(self, now: Instant) -> tuple[Scalar, ...]:
         (s,) = now.state

@@ -7,23 +7,38 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 import numpy as np
 
-from ..mechanics import AbstractEffect, Instant
+from ..mechanics import AbstractEffect, Instant, Wave
 from ..parameters import Scalar, param
-from .scales import orders
+from .scales import LABORATORY, natural_frequency, orders
 
 LEAST_ORDER = 4.0
 """Repetitions a turn below which a ripple cannot be told from gravity."""
 
 
 class Gravity(AbstractEffect):
-    r"""Weight of the link, :math:`T = +G \sin y`, :math:`G = m g L`: positive upright, negative hanging (paper, 3.3)."""
+    r"""Weight of the link, :math:`T = +G \sin(y + \varphi_0)`, :math:`G = m g L`: positive upright, negative hanging.
+
+    :math:`\varphi_0` is how far the zero of the encoder is off the vertical, where that is not 0 as in the paper (3.3).
+    """
+
+    alike: ClassVar[dict[str, str]] = {
+        "preload": "a swing of the link over which its weight changes: by twenty degrees, or from two places",
+        "torque_ripple": "a swing of the link that is wider than the ripple is long",
+        "gap_spring": "a motion of the base and the link together, in which a spring across the joint does not bend",
+    }
+
+    wave: ClassVar[Wave | None] = Wave("G", "phi0", None, "y")
 
     G: Scalar = param(unit="N m", null=0.0, scale=10.0)
+    phi0: Scalar = param(unit="rad", usual=0.0, scale=0.1)
     port: ClassVar[str] = "ground"
     motions: ClassVar[tuple[str, ...]] = ("turning",)
 
+    def forms(self) -> list[AbstractEffect]:
+        return [Gravity(self.G * np.cos(self.phi0)) if float(self.phi0) else Gravity(self.G, 0.01)]
+
     def torque(self, now: Instant) -> Scalar:
-        return self.G * jnp.sin(now.y)
+        return self.G * jnp.sin(now.y + self.phi0)
 
 
 class LinearGravity(AbstractEffect):
@@ -59,6 +74,7 @@ class TorqueRipple(AbstractEffect):
     N: Scalar = param(unit="1", default=20.0, lower=LEAST_ORDER, scale=1.0)
     phi: Scalar = param(unit="1", default=0.0, scale=0.1)
     port: ClassVar[str] = "ground"
+    wave: ClassVar[Wave | None] = Wave("A", "phi", "N", "y")
 
     @classmethod
     def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
@@ -67,3 +83,23 @@ class TorqueRipple(AbstractEffect):
 
     def torque(self, now: Instant) -> Scalar:
         return self.A * jnp.sin(self.N * now.y + self.phi)
+
+
+class Disturbance(AbstractEffect):
+    r"""A hum or an unbalance that nobody recorded, :math:`T = A \sin(\omega t + \varphi)`, whatever the link does.
+
+    It resembles nothing that goes with the joint's motion, but in a record whose drive has that frequency too.
+    """
+
+    A: Scalar = param(unit="N m", null=0.0, scale=1.0)
+    omega: Scalar = param(unit="1/s", default=LABORATORY, lower=0.0, scale=1.0, label="angular frequency")
+    phi: Scalar = param(unit="1", default=0.0, scale=0.1)
+    port: ClassVar[str] = "ground"
+    wave: ClassVar[Wave | None] = Wave("A", "phi", "omega", "t")
+
+    @classmethod
+    def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
+        return [cls(1.0, natural_frequency(system), phase) for phase in (0.0, 0.5 * np.pi)]
+
+    def torque(self, now: Instant) -> Scalar:
+        return self.A * jnp.sin(self.omega * now.t + self.phi)

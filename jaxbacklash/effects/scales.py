@@ -35,9 +35,21 @@ def sliding_speeds(motion: Any | None) -> tuple[float, ...]:
     return tuple(share * (typical if typical > 0.0 else 1.0) for share in (0.1, 0.03, 0.3))
 
 
-def orders(motion: Any | None, least: float) -> np.ndarray:
-    """Orders N of a torque that repeats N times a turn, from ``least`` on: as far as `FURTHEST`, or as far as neighbours can
-    be whose phases over the link's swing differ by little enough for each of them to be found from one."""
-    swing = 0.0 if motion is None else 0.5 * float(np.subtract(*np.quantile(motion.y, (0.98, 0.02))))
+def pressed(system: Any, motion: Any | None) -> float:
+    """A round length near which a contact is pressed in [rad]: by a record's motion, else as much as half the play."""
+    half = 0.5 * float(system.contact.backlash) if system.has_play else 0.0
+    deep = 0.0
+    if motion is not None:
+        deflection = np.maximum(np.abs(motion.y - motion.x) - half, 0.0)
+        deep = float(np.sqrt(np.sum(deflection**2) / max(np.count_nonzero(deflection), 1)))
+    typical = deep if deep > 0.0 else half if half > 0.0 else 0.01
+    return float(f"{typical:.0e}")
+
+
+def orders(motion: Any | None, least: float, over: str = "y") -> np.ndarray:
+    """Orders N of what repeats N times a turn of the link, or of the base for ``over`` "x", from ``least`` on: as far as
+    `FURTHEST`, or as far as neighbours can be whose phases over the swing differ by little enough for each of them to be found
+    from one."""
+    swing = 0.0 if motion is None else 0.5 * float(np.subtract(*np.quantile(getattr(motion, over), (0.98, 0.02))))
     spacing = min((FURTHEST - least) / RUNGS, 1.5 / swing if swing > 0.0 else np.inf)
     return least + spacing * np.arange(RUNGS)

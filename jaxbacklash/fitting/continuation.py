@@ -22,11 +22,12 @@ from dataclasses import dataclass
 import equinox as eqx
 import numpy as np
 
-from ..mechanics import AbstractEffect
+from ..mechanics import AbstractEffect, Instant
 from ..parameters import specs, values
 from ..shooting.levenberg import Levenberg, Minimum, minimise
 from ..shooting.multiple_shooting import tie_weights
 from ..shooting.problem import Problem, Unknowns
+from ..system import System
 from .friction_homotopy import with_friction_widths
 from .information import freedom
 from .stick_slip import search_stick_slip
@@ -284,11 +285,18 @@ def softer(problem: Problem, speeds: Mapping[str, float], share: float) -> Probl
     step = 0.5 * float(problem.windows.panel)
     inertia = float(problem.base[list(specs(problem.system)).index("inertia")])
     widths = {law: share * speed for law, speed in speeds.items()}
-    stiff = [law for law, width in widths.items() if _level(problem.system.effects[law]) * step > STABLE * inertia * width]
+    deepest = float(np.max(np.abs(problem.windows.measured)))
+    levels = {law: _level(problem.system.effects[law], problem.system, deepest) for law in widths}
+    stiff = [law for law, width in widths.items() if levels[law] * step > STABLE * inertia * width]
     return problem if stiff else with_friction_widths(problem, widths)
 
 
-def _level(law: AbstractEffect) -> float:
-    """The largest torque that a law states [N m]."""
-    found = values(law)
-    return max((abs(found[n]) for n, s in specs(law).items() if s.unit == "N m"), default=0.0)
+def _level(law: AbstractEffect, system: System, deepest: float) -> float:
+    """The largest torque that a law states [N m], or exerts at rest in a contact pressed in by all that was seen [rad]."""
+    found, stiffness = values(law), 0.0 if system.contact is None else system.contact.stiffness
+    still = np.float64(0.0)
+    moment = Instant(
+        still, still, still, still, still, still, still, np.float64(deepest), np.float64(1.0), stiffness, system.inertia
+    )
+    at_rest = law.dry(moment)
+    return max((abs(found[n]) for n, s in specs(law).items() if s.unit == "N m"), default=float(at_rest))

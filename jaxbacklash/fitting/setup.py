@@ -13,7 +13,7 @@ from ..compiled import kept_jit
 from ..effects import Contact, Damper, Spring
 from ..errors import BadInput
 from ..mechanics import AbstractEffect, Drive, canonical_name, catalogue, motion_of
-from ..parameters import ravel, specs, values, with_values
+from ..parameters import free_specs, ravel, specs, values, with_values
 from ..records import Record
 from ..regression.along_motion import Motion, own_states
 from ..regression.equation_error import Start, estimate
@@ -133,12 +133,12 @@ def _system(start: Start, record: Record, model: str) -> System:
 
 
 def free_names(system: System, beside: Iterable[str] | None = None) -> tuple[str, ...]:
-    """All parameters that a fit may change: everything but the inertia, numerical settings, and what an effect yields to
-    those of ``beside`` (default: all that the system has)."""
+    """All parameters that a fit may change: everything but the inertia, numerical settings, shapes at their usual values, and
+    what an effect yields to those of ``beside`` (default: all that the system has)."""
     present = set(system.effects if beside is None else beside)
     effects = system.effects.items()
     held = {f"{name}.{own}" for name, effect in effects for own, other in effect.yields.items() if other in present}
-    return tuple(n for n, spec in specs(system).items() if not spec.fixed and n != "inertia" and n not in held)
+    return tuple(n for n in free_specs(system) if n != "inertia" and n not in held)
 
 
 def add_effects(system: System, effects: Sequence[AbstractEffect | str]) -> System:
@@ -218,7 +218,7 @@ def first_guess(problem: Problem) -> Unknowns:
     if system.observed == "T":
         # A link that something holds, where its contact would carry the first force of the window.
         level = 10.0 / np.max(np.asarray(w.weight))
-        y, dy = y + np.asarray(place(system, w.t0, np.asarray(w.measured)[:, 0], level)), 0.0 * dy
+        y, dy = y + np.asarray(place(system, w.t0, y, np.asarray(w.measured)[:, 0], level)), 0.0 * dy
     starts = read_through(w, at_rest(w, system, y, dy), system)
     if len(starts) > 2 and system.observed != "T":
         starts = np.concatenate([starts[:2], followed(w, system, starts[0], starts[1])])
@@ -267,14 +267,14 @@ def read_through(w: Windows, starts: np.ndarray, system: System, before: System 
         return starts
     y, dy = starts[0], starts[1]
     z, dz = relative(w, y, dy) if system.observed == "z" else (y, dy)
-    seen, slope = (z, np.ones_like(z)) if before is None else _chain(before, z)
-    place = z
+    seen, slope = (z, np.ones_like(z)) if before is None else _chain(before, z, _remembered(w, before, y, dy))
+    place, hidden = z, _remembered(w, system, y, dy)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):  # a chain may show nothing of a motion
-        shown, own = _chain(system, place)
+        shown, own = _chain(system, place, hidden)
         first = float(np.max(np.abs(seen - shown)))
         for _ in range(NEWTON):
             place = place + (seen - shown) / own
-            shown, own = _chain(system, place)
+            shown, own = _chain(system, place, hidden)
         speed = dz * slope / own
         # Where rounding alone keeps the slope from zero, it leads anywhere.
         astray = np.max(np.abs(seen - shown)) > max(first, ROUNDING * float(np.max(np.abs(seen))))
@@ -283,17 +283,30 @@ def read_through(w: Windows, starts: np.ndarray, system: System, before: System 
     return np.concatenate([[y - z + place, dy - dz + speed], starts[2:]])
 
 
-def _chain(system: System, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """What the measuring chain shows of places (W,), and how it grows with them."""
+def _chain(system: System, place: np.ndarray, hidden: tuple[np.ndarray, ...]) -> tuple[np.ndarray, np.ndarray]:
+    """What the measuring chain shows of places (W,), and how it grows with them; ``hidden`` are the states (W,) of its laws."""
     # Without all that does not take part, one program serves every system.
-    chain = {name: e for name, e in system.effects.items() if type(e).observe is not AbstractEffect.observe}
-    shown, slope = _through(chain, np.asarray(place))
+    shown, slope = _through(_measuring(system), np.asarray(place), hidden)
     return np.asarray(shown), np.asarray(slope)
 
 
+def _measuring(system: System) -> dict[str, AbstractEffect]:
+    """The laws of the measuring chain by name."""
+    return {name: e for name, e in system.effects.items() if type(e).observe is not AbstractEffect.observe}
+
+
+def _remembered(w: Windows, system: System, y: np.ndarray, dy: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Internal states (W,) of the measuring chain where nothing is known of what was before."""
+    chain = _measuring(system)
+    if not any(effect.states for effect in chain.values()):
+        return ()
+    starts = zip(at_rest(w, system, y, dy), system.state_names)
+    return tuple(state for state, name in starts if name.partition(".")[0] in chain)
+
+
 @kept_jit
-def _through(chain: dict[str, AbstractEffect], place: np.ndarray) -> Any:
-    return jax.jvp(lambda value: observe(chain, value), (place,), (jnp.ones_like(place),))
+def _through(chain: dict[str, AbstractEffect], place: np.ndarray, hidden: tuple[np.ndarray, ...]) -> Any:
+    return jax.jvp(lambda value: observe(chain, value, hidden), (place,), (jnp.ones_like(place),))
 
 
 def relative(w: Windows, y: np.ndarray, dy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -53,7 +53,7 @@ def march(problem: Problem, theta: Array, coefficients: Array) -> Array:
     def step(state: Array, at: Any) -> tuple[Array, Array]:
         t0, first, follow, own, force = at
         x, dx = (w.basis[order, 0] @ own for order in (0, 1))
-        fresh = jnp.stack(system.rest(t0, x + place(system, t0, first, level), jnp.zeros_like(x), Drive(x, dx)))
+        fresh = jnp.stack(system.rest(t0, x + place(system, t0, x, first, level), jnp.zeros_like(x), Drive(x, dx)))
         begin = jnp.where(follow > 0.0, state, fresh)
         path = trajectory(problem, theta, begin, own, t0, force)
         return jnp.stack(path.end), begin
@@ -62,14 +62,15 @@ def march(problem: Problem, theta: Array, coefficients: Array) -> Array:
     return scan_used(step, begun, (w.t0, w.measured[:, 0], follows, local, w.force), w.used).T
 
 
-def place(system: System, t: Array, force: Array, level: Array) -> Array:
-    """Relative position at which the contact carries this force; the middle of the play where it carries less than noise."""
+def place(system: System, t: Array, x: Array, force: Array, level: Array) -> Array:
+    """Relative position at which the contact carries this force, with the base at ``x``; the middle of the play where it carries
+    less than noise."""
     if system.contact is None:
         return jnp.zeros_like(force)
     pressed = force / jnp.maximum(system.contact.stiffness, 1e-300)
     if not isinstance(system.contact, Contact):
         return pressed
-    low, high = system.edges(t)
+    low, high = system.edges(t, x)
     return jnp.where(force > level, high + pressed, jnp.where(force < -level, low + pressed, 0.5 * (low + high)))
 
 

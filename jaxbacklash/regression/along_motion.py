@@ -119,7 +119,11 @@ def _alone(effect: AbstractEffect, joint: System, rows: Any, substeps: int) -> A
 
     def at(t: Any, y: Any, dy: Any, x: Any, dx: Any, own: Any) -> Any:
         now = beside.instant(t, (y, dy), Drive(x, dx))
-        return effect.torque(now.seen_by(own)) + jnp.zeros_like(y)
+        torque = effect.torque(now.seen_by(own)) + jnp.zeros_like(y)
+        if type(effect).reshape is AbstractEffect.reshape:
+            return torque
+        # Where it moves the play, the contact's torque is another.
+        return torque + beside.bare_torque(now) - joint.bare_torque(joint.instant(t, (y, dy), Drive(x, dx)))
 
     t, y, dy, x, dx = rows
     return jax.vmap(at)(t, y, dy, x, dx, states)

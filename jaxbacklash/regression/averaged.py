@@ -12,6 +12,7 @@ import numpy as np
 from ..records import Record
 from ..records.force import force_edges
 from ..signals import Bump
+from ..signals.bump import HALF_WIDTH
 
 
 class Averaged:
@@ -20,6 +21,7 @@ class Averaged:
     Parameters
     ----------
     record : of N samples
+    half_width : of the bumps [s]; the default is that of `jaxbacklash.signals.Bump`
 
     Attributes
     ----------
@@ -29,8 +31,8 @@ class Averaged:
     spacing : of the rows [s]
     """
 
-    def __init__(self, record: Record) -> None:
-        self._bump = Bump(record.samples, record.dt)
+    def __init__(self, record: Record, half_width: float = HALF_WIDTH) -> None:
+        self._bump = Bump(record.samples, record.dt, half_width)
         self.spacing = self._bump.stride * record.dt
         self.passes = self._bump.passes
         self.x = record.channels.get("x", np.zeros(record.samples))

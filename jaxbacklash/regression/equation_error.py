@@ -92,9 +92,9 @@ def estimate(
         low, high = grid[max(k - 1, 0)], grid[min(k + 1, grid.size - 1)]
         half = float(optimize.minimize_scalar(lambda h: solve(h)[0], bounds=(low, high), method="bounded").x)
     misfit, solution = solve(half)
-    if spring:  # strengths relative to the contact stiffness need it to be known
-        weak.stiffness = max(float(solution[1]), 1e-9)
-        misfit, solution = solve(half)
+    # Strengths relative to the contact stiffness or to the damping need these to be known.
+    weak.joint = max(float(solution[1]), 1e-9) if spring else 1.0, max(float(solution[0]), 1e-9)
+    misfit, solution = solve(half)
     rest = iter(solution[2 if spring else 1 :])
     found = inertia if inertia is not None else max(float(next(rest)), 1e-9)
     stiffness = max(float(solution[1]), 1e-6 * found) if spring else None
@@ -145,7 +145,7 @@ class _WeakForm(Averaged):
         super().__init__(record)
         self.z = record.channels["z"] if "z" in record.channels else self.y - self.x
         self._record = record
-        self.stiffness = 1.0
+        self.joint = 1.0, 1.0  # stiffness and damping
         self._speeds: tuple[np.ndarray, np.ndarray] | None = None
 
     def damping(self) -> np.ndarray:
@@ -153,19 +153,19 @@ class _WeakForm(Averaged):
 
     def torque(self, effect: AbstractEffect, half_play: float) -> np.ndarray:
         """Torque of an effect on the measured motion under the bump; its speeds are smoothed."""
-        return self.average(self._pointwise(effect, half_play, self.stiffness))
+        return self.average(self._pointwise(effect, half_play, self.joint))
 
     def steady(self, effect: AbstractEffect, reach: float) -> np.ndarray | None:
-        """The same where neither play nor stiffness shows in it, None where they do; ``reach`` is the largest deflection."""
-        first, other = self._pointwise(effect, 0.1 * reach, 1.0), self._pointwise(effect, 0.6 * reach, 2.0)
+        """The same where nothing of the joint shows in it, None where something does; ``reach`` is the largest deflection."""
+        first, other = (self._pointwise(effect, share * reach, (size, size)) for share, size in ((0.1, 1.0), (0.6, 2.0)))
         return self.average(first) if np.array_equal(first, other) else None
 
-    def _pointwise(self, effect: AbstractEffect, half_play: float, stiffness: float) -> np.ndarray:
+    def _pointwise(self, effect: AbstractEffect, half_play: float, joint: tuple[float, float]) -> np.ndarray:
         dy, dx = self._smooth_speeds()
         deflection = _dead_zone(self.z, half_play)
         contact = (np.abs(self.z) > half_play).astype(float)
-        numbers = np.asarray(stiffness), np.ones(())
-        now = Instant(self._record.t, self.y, dy, self.x, dx, self.z, dy - dx, deflection, contact, *numbers)
+        moved = self._record.t, self.y, dy, self.x, dx, self.z, dy - dx, deflection, contact
+        now = Instant(*moved, np.asarray(joint[0]), np.ones(()), damping=np.asarray(joint[1]))
         return exerted(effect, now)
 
     def _smooth_speeds(self) -> tuple[np.ndarray, np.ndarray]:

@@ -7,20 +7,25 @@ It is fast and never gets lost, but noise in the motion biases it: it proposes s
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from scipy import linalg
 
 from ..mechanics import AbstractEffect, canonical_name
-from ..parameters import ravel, specs
+from ..parameters import free_specs, ravel, specs
 from ..records import Record
+from ..signals.bump import HALF_WIDTH
 from ..system import System
-from .along_motion import motion, own_torques, torques
+from .along_motion import Motion, motion, own_torques, torques
 from .averaged import Averaged
 
 ORDER = 8
 """Order of the autoregression that whitens the rows."""
+QUICKER = 4.0
+"""How many times shorter bumps are that a hum of tens of hertz passes."""
 RUNAWAY = 1e30
 """A torque this large, whatever its unit, belongs to a motion that has run away, and explains nothing. Its fourth power, which a
 regression forms, stays within double precision."""
@@ -29,11 +34,18 @@ regression forms, stays within double precision."""
 class WeakForm(Averaged):
     """A record averaged under bumps, ready to be regressed on any law."""
 
-    def __init__(self, record: Record) -> None:
-        super().__init__(record)
-        self.motion = motion(record)
+    def __init__(self, record: Record, *, quicker: WeakForm | None = None) -> None:
+        super().__init__(record, HALF_WIDTH if quicker is None else HALF_WIDTH / QUICKER)
+        self.record = record
+        self.motion: Motion = motion(record) if quicker is None else quicker.motion
         self.blind = record.kind == "transmitted"  # the link is not seen, so there is nothing to regress on
         self._columns: dict[str, tuple[np.ndarray, np.ndarray]] = {}
+        self._kept: dict[str, Any] = {}
+
+    @cached_property
+    def quick(self) -> WeakForm:
+        """The same under bumps `QUICKER` times as short, which let through what changes as much sooner."""
+        return WeakForm(self.record, quicker=self)
 
     def missing(self, system: System, free: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
         """Missing torque under the bump (R,), and how it falls with each free parameter of the model (R, q)."""
@@ -70,8 +82,17 @@ class WeakForm(Averaged):
         """
         if len(variants) <= keep:
             return variants
-        fall = self._correlations(system, free, variants)
-        return [variants[k] for k in np.argsort(-fall)[:keep]]
+        share = self._correlations(system, free, variants) ** 2
+        rows = self.acceleration.size
+        # A shape that has one more free parameter than another must bring as much more as chance would.
+        fall = share * (rows - ORDER) - np.log(rows) * np.array([len(free_specs(v)) for v in variants])
+        return [variants[k] for k in np.argsort(-fall, kind="stable")[:keep]]
+
+    def kept(self, name: str, make: Callable[[], Any]) -> Any:
+        """What was made for a law before, or is now: rows that do not go with the model."""
+        if name not in self._kept:
+            self._kept[name] = make()
+        return self._kept[name]
 
     def evidence(self, system: System, free: tuple[str, ...], variants: list[AbstractEffect]) -> float:
         """Fall of the sum of squares, in units of the rows' own variance, by the likeliest shape of a law: near 1 by chance."""

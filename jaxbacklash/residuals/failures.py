@@ -78,7 +78,7 @@ def excitation(record: Record, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def places(latent: Latent) -> np.ndarray:
     """Index into `PLACES` of every value, (N,)."""
-    low, high = (np.asarray(e, dtype=float) for e in latent.system.edges(latent.t))
+    low, high = (np.asarray(e, dtype=float) for e in latent.system.edges(latent.t, latent.x))
     near = EDGE * 0.5 * (high - low)
     found = np.where(latent.z > high, 4, np.where(latent.z < low, 0, 2))
     found = np.where(np.abs(latent.z - low) < near, 1, found)

@@ -11,16 +11,25 @@ import jax
 import jax.numpy as jnp
 
 from ..signals import DEGREE
+from ..system import System
 from .problem import Problem
 from .windows import Windows
 
 Array = Any
 
 
+def lags(w: Windows, system: System, t0: Array) -> Array | None:
+    """How far the measured channel lags at the panel edges of windows that begin at ``t0`` (...), (..., P + 1) [s]; None where no
+    law makes it lag."""
+    times = jnp.asarray(t0)[..., None] + w.panel * jnp.arange(w.basis.shape[1])
+    lag = system.lag(times)
+    return None if lag is None else jnp.broadcast_to(lag, times.shape)
+
+
 def spline_input(w: Windows, lag: Array | None, local: Array) -> tuple[Array, Array]:
     """Input and its rate at a window's panel edges, (P + 1,) each, from its ``local`` coefficients (m + 5,).
 
-    ``lag`` [s] is that of the measured channel, None where no law makes it lag.
+    ``lag`` (P + 1,) [s] is that of the measured channel, None where no law makes it lag.
     """
     if not w.intervals:
         zero = jnp.zeros(w.basis.shape[1])
@@ -40,19 +49,21 @@ def spline_input(w: Windows, lag: Array | None, local: Array) -> tuple[Array, Ar
 
 
 def input_tangents(problem: Problem, theta: Array, local: Array) -> tuple[Array, Array | None]:
-    """Derivatives of input and rate by the coefficients, (2, P + 1, m + 5), and by the parameters where a lag is one of them.
+    """Derivatives of input and rate by the coefficients, (2, P + 1, m + 5, W), and by the parameters where a lag is one of them.
 
-    ``theta`` (q,) are the free parameters, ``local`` (W, m + 5) the coefficients that each window sees.
+    ``theta`` (q,) are the free parameters, ``local`` (W, m + 5) the coefficients that each window sees. Where nothing lags all
+    windows move alike, and the last axis has length 1.
     """
     w = problem.windows
-    lag = lambda theta: problem.rebuild(theta).lag()  # noqa: E731
+    lag = lambda theta: lags(w, problem.rebuild(theta), w.t0)  # noqa: E731
     delay = lag(theta)
     if not w.intervals:
-        return jnp.zeros((2, w.basis.shape[1], 0)), None
-    basis = jnp.stack(spline_input(w, delay, jnp.eye(local.shape[1])))
+        return jnp.zeros((2, w.basis.shape[1], 0, 1)), None
+    each = jnp.eye(local.shape[1])
     if delay is None:
-        return basis, None
-    by_lag = jax.jvp(lambda tau: jnp.stack(spline_input(w, tau, local.T)), (delay,), (jnp.ones_like(delay),))[1]
+        return jnp.stack(spline_input(w, None, each))[..., None], None
+    basis = jax.vmap(lambda own: jnp.stack(spline_input(w, own[:, None], each)), out_axes=-1)(delay)
+    by_lag = jax.jvp(lambda tau: jnp.stack(spline_input(w, tau, local.T)), (delay.T,), (jnp.ones_like(delay.T),))[1]
     return basis, jnp.swapaxes(by_lag, 1, 2)[..., None] * jax.jacfwd(lag)(theta)
 
 

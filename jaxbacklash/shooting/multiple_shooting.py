@@ -24,7 +24,7 @@ from ..mechanics import Drive
 from ..solvers.substeps import run_panels
 from .active_laws import rebuild_active
 from .chunks import by_chunks
-from .input_spline import input_tangents, local_coefficients, spline_input
+from .input_spline import input_tangents, lags, local_coefficients, spline_input
 from .problem import Problem, Unknowns
 from .tangents import drive, rows, trajectories
 from .windows import Windows
@@ -88,10 +88,11 @@ def trajectory(problem: Problem, theta: Array, start: Array, local: Array, t0: A
     """
     w = problem.windows
     system = problem.rebuild(theta)
-    along = drive(w, *spline_input(w, system.lag(), local), force)
+    along = drive(w, *spline_input(w, lags(w, system, t0), local), force)
     state = tuple(start[i] for i in range(start.shape[0]))
-    end, states = run_panels(system, t0, state, along, w.panel, w.every, system.switches)
-    times = t0 + w.panel * w.every * jnp.arange(w.samples)
+    begin, panel = system.passed(t0, w.panel)
+    end, states = run_panels(system, begin, state, along, panel, w.every, system.switches)
+    times = begin + panel * w.every * jnp.arange(w.samples)
     return Trajectory(times, states, jax.tree.map(lambda v: v[: -1 : w.every], along), end)
 
 
@@ -112,12 +113,12 @@ def predictions(problem: Problem, unknowns: Unknowns) -> Prediction:
 def _predict(problem: Problem, theta: Array, starts: Array, local: Array) -> tuple[Prediction, Any, Array, Array]:
     w = problem.windows
     system = problem.rebuild(theta)
-    u, du = jax.vmap(lambda c: spline_input(w, system.lag(), c))(local)
+    u, du = jax.vmap(lambda t0, c: spline_input(w, lags(w, system, t0), c))(w.t0, local)
     end, states = trajectories(w, system, starts, u, du)
     kept = tuple(s[:, :: w.every] for s in states)
     at = jax.vmap(jax.vmap(lambda u, du, f: drive(w, u, du, f)))(u, du, w.force)
     samples = jax.tree.map(lambda v: v[:, : -1 : w.every], at)
-    times = w.t0[:, None] + w.panel * w.every * jnp.arange(w.samples)
+    times = system.passed(w.t0[:, None] + w.panel * w.every * jnp.arange(w.samples), w.panel)[0]
     motion = jax.vmap(jax.vmap(system.output))(times, kept, samples)
     measured = local @ w.shown.T if local.shape[1] else jnp.zeros((w.count, 0))
     return Prediction(motion, measured, end.T), states, u, du

@@ -35,7 +35,8 @@ def trajectories(w: Windows, system: System, starts: Array, u: Array, du: Array)
 
     def one(start: Array, t0: Array, u: Array, du: Array, force: Array) -> Any:
         state = tuple(start[i] for i in range(starts.shape[0]))
-        return run_panels(system, t0, state, drive(w, u, du, force), w.panel, 1, system.switches)
+        begin, panel = system.passed(t0, w.panel)
+        return run_panels(system, begin, state, drive(w, u, du, force), panel, 1, system.switches)
 
     end, states = jax.vmap(one, in_axes=(1, 0, 0, 0, 0))(starts, w.t0, u, du, w.force)
     return jnp.stack(end), states
@@ -65,7 +66,8 @@ def panel_matrices(
     def step(own: Any, theta: Array, t: Array, f0: Array, f1: Array) -> Any:
         system = rebuild(theta)
         a, b = drive(w, own[n], own[n + 1], f0), drive(w, own[n + 2], own[n + 3], f1)
-        return one_panel(system, t, own[:n], a, b, w.panel, system.switches)
+        begin, panel = system.passed(t, w.panel)
+        return one_panel(system, begin, own[:n], a, b, panel, system.switches)
 
     lanes = jax.vmap(step, in_axes=(0, None, 0, 0, 0))
 
@@ -100,7 +102,7 @@ def output_matrices(w: Windows, rebuild: Any, theta: Array, states: tuple[Array,
 
     def show(own: Array, theta: Array, t: Array, force: Array) -> Array:
         system = rebuild(theta)
-        return system.output(t, tuple(own[i] for i in range(n)), drive(w, own[n], own[n + 1], force))
+        return system.output(system.passed(t, w.panel)[0], tuple(own[i] for i in range(n)), drive(w, own[n], own[n + 1], force))
 
     lanes = jax.vmap(jax.vmap(show, in_axes=(-1, None, 0, 0)), in_axes=(-2, None, 0, 0))
     own = jnp.stack([*states, u, du])
@@ -119,7 +121,7 @@ def chain(matrices: Array, basis: Array, lagged: Array | None) -> tuple[Array, A
     Parameters
     ----------
     matrices : (P, n + 4 + q, n, W) of `panel_matrices`
-    basis : (2, P+1, L) input and rate at panel edges per spline coefficient
+    basis : (2, P+1, L, W) input and rate at panel edges per spline coefficient, W = 1 where windows do not differ
     lagged : (2, W, P+1, q) how they move with theta where the measured channel lags, else None
 
     Returns
@@ -129,7 +131,7 @@ def chain(matrices: Array, basis: Array, lagged: Array | None) -> tuple[Array, A
     n, free, windows = matrices.shape[2], basis.shape[2], matrices.shape[3]
     q = matrices.shape[1] - n - 4
     first = jnp.zeros((n, n + free + q, windows)).at[jnp.arange(n), jnp.arange(n)].set(1.0)
-    edges = jnp.stack([basis[0, :-1], basis[1, :-1], basis[0, 1:], basis[1, 1:]], axis=1)  # (P, 4, L)
+    edges = jnp.stack([basis[0, :-1], basis[1, :-1], basis[0, 1:], basis[1, 1:]], axis=1)  # (P, 4, L, W)
     late = jnp.zeros((edges.shape[0], 0))
     if lagged is not None:
         stacked = jnp.stack([lagged[0, :, :-1], lagged[1, :, :-1], lagged[0, :, 1:], lagged[1, :, 1:]], axis=-1)
@@ -138,7 +140,7 @@ def chain(matrices: Array, basis: Array, lagged: Array | None) -> tuple[Array, A
     def step(tangent: Array, at: Any) -> tuple[Array, Array]:
         own, edge, extra = at
         following = sum(own[j][:, None] * tangent[j] for j in range(n))
-        by_input = sum(own[n + e][:, None] * edge[e][:, None] for e in range(4))
+        by_input = sum(own[n + e][:, None] * edge[e] for e in range(4))
         by_theta = jnp.swapaxes(own[n + 4 :], 0, 1)
         if lagged is not None:
             by_theta = by_theta + extra
@@ -163,7 +165,7 @@ def rows(
     shown = output_matrices(w, rebuild, theta, tuple(s[:, :: w.every] for s in states), u[:, at], du[:, at])
     by_state = along[:: w.every]  # (M, n, n + L + q, W)
     tangent = sum(shown[i].T[:, None] * by_state[:, i] for i in range(n))
-    by_input = sum(shown[n + e].T[:, None] * basis[e, at][:, :, None] for e in range(2))
+    by_input = sum(shown[n + e].T[:, None] * basis[e, at] for e in range(2))
     by_theta = jnp.transpose(shown[n + 2 :], (2, 0, 1))
     if lagged is not None:
         by_theta = by_theta + sum(shown[n + e].T[:, None] * jnp.transpose(lagged[e][:, at], (1, 2, 0)) for e in range(2))

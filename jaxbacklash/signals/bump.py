@@ -15,10 +15,11 @@ class Bump:
     ----------
     samples : length of the signals
     dt : sample spacing [s]
+    half_width : [s], eight samples at least
     """
 
-    def __init__(self, samples: int, dt: float) -> None:
-        reach = int(np.clip(round(HALF_WIDTH / dt), 8, samples // 6))
+    def __init__(self, samples: int, dt: float, half_width: float = HALF_WIDTH) -> None:
+        reach = int(np.clip(round(half_width / dt), 8, samples // 6))
         tau = np.arange(-reach, reach + 1) / reach
         base = 1.0 - tau**2
         first = -8.0 * tau * base**3 / (reach * dt)

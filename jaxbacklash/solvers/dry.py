@@ -16,7 +16,7 @@ from typing import Any, NamedTuple, Protocol
 import jax
 import jax.numpy as jnp
 
-from .panels import SHARES, WEIGHTS, Cubic, Scalar, State, _add, _first_crossing, _side
+from .panels import SHARES, WEIGHTS, Cubic, Scalar, State, _add, _first_crossing, _first_kink, _side
 
 SOON = 1e-4
 """Share of a panel within which an event counts as met: a fraction of a microsecond."""
@@ -33,7 +33,9 @@ class Sliding(Protocol):
     @property
     def has_play(self) -> bool: ...
 
-    def edges(self, t: Scalar) -> tuple[Scalar, Scalar]: ...
+    def edges(self, t: Scalar, x: Scalar) -> tuple[Scalar, Scalar]: ...
+
+    def kinks(self, t: Scalar, state: State, drive: Any, side: Scalar | None, ddz: Scalar) -> list[tuple[Scalar, Scalar]]: ...
 
     def sliding(self, t: Scalar, state: State, drive: Any, side: Scalar | None) -> tuple[State, tuple[Scalar, Scalar]]: ...
 
@@ -101,7 +103,7 @@ def _turned(speed: Scalar, slip: Scalar, before: Scalar, pull: Scalar, capacity:
 
 def advance_dry(system: Sliding, t: Scalar, state: State, drive_at: Any, base: Cubic, h: Scalar) -> State:
     """Advance the state over one panel; the arguments are those of `panels.advance`."""
-    low, high = system.edges(t) if system.has_play else (0.0, 0.0)
+    low, high = system.edges(t, base.a) if system.has_play else (0.0, 0.0)
     soon = SOON * h
     # On a base at rest both frictions oppose one speed and are one.
     resting = (base.b == 0.0) & (base.c == 0.0) & (base.d == 0.0)
@@ -125,7 +127,9 @@ def advance_dry(system: Sliding, t: Scalar, state: State, drive_at: Any, base: C
         dz = dy - base.slope(begin)
         state = (state[0], dy, *state[2:])
         acceleration = mode.acceleration(start)
-        event, met = _first_event(system, (z, low, high), (dz, dy), (acceleration - start.base, acceleration), rest, soon)
+        ddz = acceleration - start.base
+        kink = _first_kink(system.kinks(t + begin, state, drive_at(begin), side, ddz), rest)
+        event, met = _first_event(system, (z, low, high), (dz, dy), (ddz, acceleration), kink, rest, soon)
         step, met = jnp.where(last, rest, event), tuple(m & ~last for m in met)
         if side is not None:
             half = 0.5 * step
@@ -158,9 +162,10 @@ def advance_dry(system: Sliding, t: Scalar, state: State, drive_at: Any, base: C
 
 def _first_event(
     system: Sliding, place: tuple[Scalar, Scalar, Scalar], speeds: tuple[Scalar, Scalar], accelerations: tuple[Scalar, Scalar],
-    rest: Scalar, soon: Scalar,
+    kink: Scalar, rest: Scalar, soon: Scalar,
 ) -> tuple[Scalar, tuple[Scalar, Scalar]]:  # fmt: skip
-    """Time to the first event ahead, or half of what is left, and whether it is that the joint's or the link's speed is zero."""
+    """Time to the first event ahead, that of the next ``kink`` among them, or half of what is left, and whether it is that the
+    joint's or the link's speed is zero."""
 
     def stop(speed: Scalar, acceleration: Scalar) -> Scalar:
         slowing = speed * acceleration < 0.0
@@ -176,7 +181,7 @@ def _first_event(
         stop_z = stop(speeds[0], accelerations[0])
     if "ground" in system.slides:
         stop_y = stop(speeds[1], accelerations[1])
-    event = jnp.minimum(edge, jnp.minimum(stop_z, stop_y))
+    event = jnp.minimum(jnp.minimum(edge, kink), jnp.minimum(stop_z, stop_y))
     found = event < rest
     return jnp.where(found, event, 0.5 * rest), (found & (stop_z <= event), found & (stop_y <= event))
 

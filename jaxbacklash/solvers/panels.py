@@ -61,7 +61,9 @@ class Switching(Protocol):
 
     def rates(self, t: Scalar, state: State, drive: Any, side: Scalar | None = None) -> State: ...
 
-    def edges(self, t: Scalar) -> tuple[Scalar, Scalar]: ...
+    def edges(self, t: Scalar, x: Scalar) -> tuple[Scalar, Scalar]: ...
+
+    def kinks(self, t: Scalar, state: State, drive: Any, side: Scalar | None, ddz: Scalar) -> list[tuple[Scalar, Scalar]]: ...
 
 
 def _add(state: State, rates: State, step: Scalar) -> State:
@@ -108,6 +110,15 @@ def _first_crossing(gap: Scalar, speed: Scalar, acceleration: Scalar, h: Scalar)
     return best
 
 
+def _first_kink(kinks: list[tuple[Scalar, Scalar]], h: Scalar) -> Scalar:
+    """First time in (0, h) at which one of some quantities with these values and rates is zero, or ``h`` if none ever is."""
+    best = h
+    for value, rate in kinks:
+        ahead = value * rate < 0.0
+        best = jnp.minimum(best, jnp.where(ahead, -value / jnp.where(ahead, rate, 1.0), h))
+    return best
+
+
 def advance(system: Switching, t: Scalar, state: State, drive_at: Any, base: Cubic, h: Scalar) -> State:
     """Advance the state over one panel.
 
@@ -120,12 +131,14 @@ def advance(system: Switching, t: Scalar, state: State, drive_at: Any, base: Cub
     base : base motion x over the panel [rad]
     h : length of the panel [s]
     """
-    low, high = system.edges(t)
+    low, high = system.edges(t, base.a)
     z, dz = state[0] - base.a, state[1] - base.b
-    first = system.rates(t, state, drive_at(0.0), _side(z, low, high))
+    side = _side(z, low, high)
+    first = system.rates(t, state, drive_at(0.0), side)
     ddz = first[1] - 2.0 * base.c
 
     crossing = jnp.minimum(_first_crossing(z - low, dz, ddz, h), _first_crossing(z - high, dz, ddz, h))
+    crossing = jnp.minimum(crossing, _first_kink(system.kinks(t, state, drive_at(0.0), side, ddz), h))
     split = jnp.where(crossing < h, crossing, 0.5 * h)
 
     half = 0.5 * split
@@ -142,7 +155,7 @@ def advance(system: Switching, t: Scalar, state: State, drive_at: Any, base: Cub
 def advance_in_turns(system: Switching, t: Scalar, state: State, drive_at: Any, base: Cubic, h: Scalar) -> State:
     """As `advance`, in loops over the two steps and their stages: slower where the laws are few, and where they are many with
     internal states among them the compiler, for which every stage is as much work as all laws, takes half as long."""
-    low, high = system.edges(t)
+    low, high = system.edges(t, base.a)
 
     def step(carry: Any, last: Any) -> Any:
         state, begin, side = carry
@@ -150,6 +163,7 @@ def advance_in_turns(system: Switching, t: Scalar, state: State, drive_at: Any, 
         first = system.rates(t + begin, state, drive_at(begin), side)
         z, dz, ddz = state[0] - base.at(begin), state[1] - base.slope(begin), first[1] - base.bend(begin)
         crossing = jnp.minimum(_first_crossing(z - low, dz, ddz, rest), _first_crossing(z - high, dz, ddz, rest))
+        crossing = jnp.minimum(crossing, _first_kink(system.kinks(t + begin, state, drive_at(begin), side, ddz), rest))
         length = jnp.where(last, rest, jnp.where(crossing < rest, crossing, 0.5 * rest))
         half = 0.5 * length
         side = jnp.where(last, side, _side(z + half * (dz + 0.5 * half * ddz), low, high))

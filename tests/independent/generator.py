@@ -5,8 +5,8 @@
     truth = simulate_truth(rig, {"gravity": {"G": -30.0}}, excitation, rate=500.0, duration=20.0)
     record = measure(truth, rng, sigma_x=3e-5, sigma_z=3e-5)          # t, x, z
 
-The laws are those of the catalogue of missing effects, and two outside it:
-unknown_disturbance, T = A sin(w t + phi); speed_stiffness, a contact stiffness k + s |z'| (s in N m s/rad^2).
+The laws are those of the catalogue of missing effects, and one outside it: speed_stiffness, a contact stiffness k + s |z'| (s in
+N m s/rad^2). unknown_disturbance is what the catalogue has as disturbance, under the name from before it was there.
 Dry friction is set-valued, the dead zone sharp, switches are located: see `kernel.py`. It needs numba.
 """
 
@@ -25,14 +25,14 @@ from tests.independent.rigs import make_rig as make_rig
 
 # name -> parameter -> column of the kernel's parameter vector
 _COLUMNS = {
-    "gravity": {"G": kernel.G},
+    "gravity": {"G": kernel.G, "phi0": kernel.PHI0},
     "preload": {"T0": kernel.T0},
     "gap_spring": {"k1": kernel.K1, "z0": kernel.K1_REST},
     "asymmetric_gap": {"z0": kernel.Z0},
     "asymmetric_stiffness": {"a": kernel.ASYM},
     "cubic_stiffness": {"k3": kernel.K3},
-    "contact_damping": {"cc": kernel.CC},
-    "hunt_crossley": {"chi": kernel.CHI},
+    "contact_damping": {"cc": kernel.CC, "pulls": kernel.CC_PULLS},
+    "hunt_crossley": {"chi": kernel.CHI, "pulls": kernel.CHI_PULLS},
     "coulomb_joint": {"Tc": kernel.TC},
     "stribeck": {"Tc": kernel.S_TC, "Ts": kernel.S_TS, "vs": kernel.S_VS},
     "coulomb_ground": {"Tc": kernel.TG},
@@ -47,10 +47,19 @@ _COLUMNS = {
     "flexible_link": {"J2": kernel.J2, "k2": kernel.K2, "c2": kernel.C2},
     "gap_drift": {"r": kernel.GAP_RATE},
     "stiffness_drift": {"r": kernel.K_RATE},
+    "transmission_error": {"e": kernel.ERROR, "M": kernel.ERROR_M, "psi": kernel.ERROR_PSI},
+    "load_friction": {"mu": kernel.MU},
+    "relaxation": {"kr": kernel.KR, "tau_r": kernel.TAU_R},
+    "contact_exponent": {"p": kernel.POWER, "d0": kernel.POWER_D0},
+    "damping_drift": {"r": kernel.C_RATE},
+    "friction_drift": {"r": kernel.DRY_RATE},
+    "disturbance": {"A": kernel.DIST, "omega": kernel.DIST_W, "phi": kernel.DIST_PHI},
     "unknown_disturbance": {"A": kernel.DIST, "w": kernel.DIST_W, "phi": kernel.DIST_PHI},
     "speed_stiffness": {"s": kernel.SPEED_K},
 }  # fmt: skip
-_SENSORS = {"sensor_delay": {"tau"}, "sensor_gain": {"g"}, "sensor_offset": {"z_s"}}
+_SENSORS = {
+    "sensor_delay": {"tau"}, "sensor_gain": {"g"}, "sensor_offset": {"z_s"}, "sensor_filter": {"tau_f"}, "clock_drift": {"r"},
+}  # fmt: skip
 _GRID = 2.5e-4  # s, between the knots of the quintic that stands for the motion in the kernel
 
 
@@ -58,6 +67,8 @@ def pack(rig: Rig, effects: dict[str, dict[str, float]]) -> np.ndarray:
     """The kernel's parameter vector (SIZE,), the shape parameters that divide set to 1 where they are not used."""
     p = np.zeros(kernel.SIZE)
     p[[kernel.S_VS, kernel.L_VS, kernel.D_FC, kernel.L_FC, kernel.W_FC, kernel.W_N, kernel.J2]] = 1.0
+    p[[kernel.TAU_R, kernel.POWER, kernel.POWER_D0, kernel.CC_PULLS, kernel.CHI_PULLS]] = 1.0
+    p[kernel.FILTER] = effects.get("sensor_filter", {}).get("tau_f", 0.0)
     p[kernel.W_BETA] = 0.5
     p[[kernel.J, kernel.B, kernel.K, kernel.C]] = rig.inertia, rig.backlash, rig.stiffness, rig.damping
     for name, values in effects.items():
@@ -72,6 +83,13 @@ def pack(rig: Rig, effects: dict[str, dict[str, float]]) -> np.ndarray:
     if "lugre" in effects and "Fs" not in effects["lugre"]:
         p[kernel.L_FS] = p[kernel.L_FC]
     return p
+
+
+def start_of(excitation: Excitation) -> np.ndarray:
+    """The kernel's state (STATES,) at t = 0, all that remembers at rest."""
+    start, at = np.zeros(kernel.STATES), (excitation.y0, excitation.v0)
+    start[:4], start[8] = (*at, *at), excitation.y0 - float(excitation.base.x(0.0))
+    return start
 
 
 def _pieces(motion: Motion, duration: float) -> np.ndarray:
@@ -102,18 +120,18 @@ def simulate_truth(
     p, base = pack(rig, effects), excitation.base
     if isinstance(base, Rest):  # z' = y': dry friction against the ground is friction in the joint
         p[kernel.TC], p[kernel.TG] = p[kernel.TC] + p[kernel.TG], 0.0
-    delay = effects.get("sensor_delay", {}).get("tau", 0.0)
-    late = np.maximum(t - delay, 0.0)
+    delay, clock = effects.get("sensor_delay", {}).get("tau", 0.0), effects.get("clock_drift", {}).get("r", 0.0)
+    late = np.maximum(t / (1.0 + clock) - delay, 0.0)
     times, where = np.unique(np.concatenate([t, late]), return_inverse=True)
-    start = np.array([excitation.y0, excitation.v0, excitation.y0, excitation.v0, 0.0, 0.0, 0.0])
-    pieces = _pieces(base, t[-1]), _pieces(excitation.force, t[-1])
-    states, contact = kernel.run(start, times, step, p, *pieces, _GRID)
+    pieces = _pieces(base, times[-1]), _pieces(excitation.force, times[-1])
+    states, contact = kernel.run(start_of(excitation), times, step, p, *pieces, _GRID)
     now, then = where[: len(t)], where[len(t) :]
     x, dx, _ = base.derivatives(t)
     y, v = states[now, 0], states[now, 1]
     gain = effects.get("sensor_gain", {}).get("g", 1.0)
     offset = effects.get("sensor_offset", {}).get("z_s", 0.0)
-    seen = gain * (states[then, 0] - base.x(late)) + offset
+    shown = states[then, 8] if p[kernel.FILTER] else states[then, 0] - base.x(late)
+    seen = gain * shown + offset
     force = excitation.force.x(t)
     return {"t": t, "x": x, "dx": dx, "y": y, "v": v, "z": y - x, "z_seen": seen, "F": force, "contact": contact[now]}
 

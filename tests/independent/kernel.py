@@ -1,8 +1,9 @@
 """The fast non-smooth stepper behind `generator.py`: event-located RK4 in numba, friction set-valued.
 
-The state is (y, v, y2, v2, s_dahl, s_lugre, s_bouc_wen). A step is taken along one smooth branch, which three modes
-name: contact (-1, 0 inside the play, +1), the sign of z' and the sign of y' (0: it sticks). If a step leaves its
-branch, bisection finds where; the modes are decided anew there and the rest of the step follows. Sticking is exact:
+The state is (y, v, y2, v2, s_dahl, s_lugre, s_bouc_wen, s_relaxation, z behind a low-pass). A step is taken along one
+smooth branch, which three modes name: contact (-1, 0 inside the play, +1), the sign of z' and the sign of y' (0: it
+sticks). If a step leaves its branch, bisection finds where; the modes are decided anew there and the rest of the step
+follows. Sticking is exact:
 the velocity is held until the torque needed exceeds what friction can give. At zero velocity the modes are the one
 solution of
 
@@ -35,9 +36,10 @@ except ImportError:  # the fast generator is for development only
 (
     J, B, K, C, G, T0, K1, K1_REST, Z0, ASYM, K3, CC, CHI, TC, S_TC, S_TS, S_VS, TG, DRAG, RIPPLE, RIPPLE_N, RIPPLE_PHI,
     D_SIGMA, D_FC, L_S0, L_S1, L_S2, L_FC, L_FS, L_VS, W_SIGMA, W_FC, W_N, W_BETA, J2, K2, C2, GAP_RATE, K_RATE,
-    DIST, DIST_W, DIST_PHI, SPEED_K, SIZE,
-) = range(44)  # fmt: skip
-STATES = 7
+    DIST, DIST_W, DIST_PHI, SPEED_K, PHI0, ERROR, ERROR_M, ERROR_PSI, MU, KR, TAU_R, POWER, POWER_D0, C_RATE, DRY_RATE,
+    CC_PULLS, CHI_PULLS, FILTER, SIZE,
+) = range(58)  # fmt: skip
+STATES = 9
 _EVENTS_PER_STEP = 60
 
 
@@ -54,12 +56,27 @@ def _path(t, coefficients, grid):
 
 
 @njit(cache=True)
-def _slip_friction(w, p):
-    """The size of the joint's sliding friction [N m] at relative speed w [rad/s]."""
+def _middle(x, p):
+    """The middle of the play [rad] with the base at x [rad]."""
+    return p[Z0] + (p[ERROR] * np.sin(p[ERROR_M] * x + p[ERROR_PSI]) if p[ERROR] != 0.0 else 0.0)
+
+
+@njit(cache=True)
+def _dry(t, p):
+    """Dry friction at t [s] over what it is at 0."""
+    return max(1 + p[DRY_RATE] * t, 0.0)
+
+
+@njit(cache=True)
+def _slip_friction(t, z, w, x, contact, p):
+    """The size of the joint's sliding friction [N m] at relative angle z [rad] and speed w [rad/s]."""
     size = p[TC]
     if p[S_TS] != 0.0 or p[S_TC] != 0.0:
         size += p[S_TC] + (p[S_TS] - p[S_TC]) * np.exp(-((w / p[S_VS]) ** 2))
-    return size
+    if p[MU] != 0.0 and contact != 0:
+        depth = z - _middle(x, p) - contact * p[B] / 2 * (1 + p[GAP_RATE] * t)
+        size += p[MU] * np.abs(p[K] * (1 + p[K_RATE] * t) * depth)
+    return size * _dry(t, p)
 
 
 @njit(cache=True)
@@ -69,13 +86,25 @@ def _torque(t, s, p, modes, x, dx, force, rate):
     z, w = y - x, v - dx
     contact, joint, ground = modes[0], modes[1], modes[2]
     speed = joint * w  # |z'| on this branch
-    total = force - p[C] * w + p[T0] - p[K1] * (z - p[K1_REST]) - p[DRAG] * ground * v * v
+    total = force - p[C] * (1 + p[C_RATE] * t) * w + p[T0] - p[K1] * (z - p[K1_REST]) - p[DRAG] * ground * v * v
     if contact != 0:
-        depth = z - p[Z0] - contact * p[B] / 2 * (1 + p[GAP_RATE] * t)
+        depth = z - _middle(x, p) - contact * p[B] / 2 * (1 + p[GAP_RATE] * t)
+        spring = p[K] * (1 + p[K_RATE] * t) * depth
         stiffness = p[K] * (1 + p[K_RATE] * t) * (1 + contact * p[ASYM]) + p[SPEED_K] * speed
-        total -= stiffness * depth + p[K3] * depth**3 + (p[CC] + p[CHI] * contact * depth) * w
+        if p[CC_PULLS] != 0.0 and p[CHI_PULLS] != 0.0:
+            damper = (p[CC] + p[CHI] * contact * depth) * w
+        else:  # spring and damper push the link out of the contact, or nothing does
+            first, second = p[CC] * w, p[CHI] * contact * depth * w
+            if p[CC_PULLS] == 0.0 and contact * (spring + first) < 0.0:
+                first = -spring
+            if p[CHI_PULLS] == 0.0 and contact * (spring + second) < 0.0:
+                second = -spring
+            damper = first + second
+        total -= stiffness * depth + p[K3] * depth**3 + damper
+        if p[POWER] != 1.0:
+            total -= spring * ((np.abs(depth) / p[POWER_D0]) ** (p[POWER] - 1) - 1)
     if p[G] != 0.0:
-        total += p[G] * np.sin(y)
+        total += p[G] * np.sin(y + p[PHI0])
     if p[RIPPLE] != 0.0:
         total += p[RIPPLE] * np.sin(p[RIPPLE_N] * y + p[RIPPLE_PHI])
     if p[DIST] != 0.0:
@@ -84,15 +113,20 @@ def _torque(t, s, p, modes, x, dx, force, rate):
         total -= p[K2] * (y - s[2]) + p[C2] * (v - s[3])
     if p[D_SIGMA] != 0.0:
         rate[4] = p[D_SIGMA] * (w - speed * s[4] / p[D_FC])
-        total -= s[4]
+        total -= s[4] * _dry(t, p)
     if p[L_S0] != 0.0:
         g = p[L_FC] + (p[L_FS] - p[L_FC]) * np.exp(-((w / p[L_VS]) ** 2))
         rate[5] = w - p[L_S0] * speed * s[5] / g
-        total -= p[L_S0] * s[5] + p[L_S1] * rate[5] + p[L_S2] * w
+        total -= (p[L_S0] * s[5] + p[L_S1] * rate[5]) * _dry(t, p) + p[L_S2] * w
     if p[W_SIGMA] != 0.0:
         full = np.abs(s[6] / p[W_FC]) ** p[W_N]
         rate[6] = p[W_SIGMA] * (w - full * (p[W_BETA] * speed * np.sign(s[6]) + (1 - p[W_BETA]) * w))
-        total -= s[6]
+        total -= s[6] * _dry(t, p)
+    if p[KR] != 0.0:
+        rate[7] = p[KR] * w - s[7] / p[TAU_R]
+        total -= s[7]
+    if p[FILTER] != 0.0:
+        rate[8] = (z - s[8]) / p[FILTER]
     return total
 
 
@@ -108,7 +142,8 @@ def _rates(t, s, p, modes, base, push, grid, rate):
     elif modes[2] == 0:
         rate[1] = 0.0
     else:
-        rate[1] = (total - modes[1] * _slip_friction(s[1] - dx, p) - modes[2] * p[TG]) / p[J]
+        at_joint = modes[1] * _slip_friction(t, s[0] - x, s[1] - dx, x, modes[0], p)
+        rate[1] = (total - at_joint - modes[2] * (p[TG] * _dry(t, p))) / p[J]
     if p[K2] != 0.0:
         rate[2] = s[3]
         rate[3] = (p[K2] * (s[0] - s[2]) + p[C2] * (s[1] - s[3])) / p[J2]
@@ -136,17 +171,18 @@ def _left(t, s, p, modes, base, push, grid, scratch, out):
     """Which of the three modes no longer hold at (t, s), into out (3,); returns whether any."""
     x, dx, ddx = _path(t, base, grid)
     force = _path(t, push, grid)[0]
-    e, w = s[0] - x - p[Z0], s[1] - dx
+    e, w = s[0] - x - _middle(x, p), s[1] - dx
     half = p[B] / 2 * (1 + p[GAP_RATE] * t)
     out[0] = np.abs(e) > half if modes[0] == 0 else modes[0] * e < half
     out[1] = modes[1] * w < 0
     out[2] = modes[2] * s[1] < 0
     if modes[1] == 0:
         total = _torque(t, s, p, modes, x, dx, force, scratch)
-        out[1] = np.abs(total - modes[2] * p[TG] - p[J] * ddx) > _slip_friction(0.0, p)
+        held = _slip_friction(t, s[0] - x, 0.0, x, modes[0], p)
+        out[1] = np.abs(total - modes[2] * (p[TG] * _dry(t, p)) - p[J] * ddx) > held
     if modes[2] == 0:
         total = _torque(t, s, p, modes, x, dx, force, scratch)
-        out[2] = np.abs(total - modes[1] * _slip_friction(w, p)) > p[TG]
+        out[2] = np.abs(total - modes[1] * _slip_friction(t, s[0] - x, w, x, modes[0], p)) > p[TG] * _dry(t, p)
     return out[0] or out[1] or out[2]
 
 
@@ -162,7 +198,7 @@ def _decide_friction(t, s, p, modes, base, push, grid, scratch, joint_zero, grou
     elif joint_zero:
         s[1] = dx
     rest = _torque(t, s, p, modes, x, s[1] if joint_zero else dx, force, scratch)
-    held, ground = _slip_friction(0.0, p), p[TG]
+    held, ground = _slip_friction(t, s[0] - x, 0.0, x, modes[0], p), p[TG] * _dry(t, p)
     if joint_zero and ground_zero:
         away = np.sign(ddx)
         if ground > 0 and np.abs(rest + held * away) <= ground:
@@ -179,7 +215,7 @@ def _decide_friction(t, s, p, modes, base, push, grid, scratch, joint_zero, grou
         pull = rest - modes[2] * ground - p[J] * ddx
         modes[1] = 0 if held > 0 and np.abs(pull) <= held else (1 if pull > 0 else -1)
     elif ground_zero:
-        pull = rest - modes[1] * _slip_friction(s[1] - dx, p)
+        pull = rest - modes[1] * _slip_friction(t, s[0] - x, s[1] - dx, x, modes[0], p)
         modes[2] = 0 if ground > 0 and np.abs(pull) <= ground else (1 if pull > 0 else -1)
 
 
@@ -187,7 +223,8 @@ def _decide_friction(t, s, p, modes, base, push, grid, scratch, joint_zero, grou
 def _decide(t, s, p, modes, left, base, push, grid, scratch):
     """New modes at a switch, given which were left."""
     if left[0]:
-        e = s[0] - _path(t, base, grid)[0] - p[Z0]
+        x = _path(t, base, grid)[0]
+        e = s[0] - x - _middle(x, p)
         modes[0] = (1 if e > 0 else -1) if modes[0] == 0 else 0
     if left[1] or left[2]:
         joint_zero, ground_zero = left[1] or modes[1] == 0, left[2] or modes[2] == 0
@@ -205,7 +242,7 @@ def run(start, t_out, step, p, base, push, grid):
     work, scratch, trial, s = np.zeros((5, STATES)), np.zeros(STATES), np.zeros(STATES), start.copy()
     modes, left = np.zeros(3, np.int64), np.zeros(3, np.bool_)
     x, dx, _ = _path(0.0, base, grid)
-    e = s[0] - x - p[Z0]
+    e = s[0] - x - _middle(x, p)
     if np.abs(e) > p[B] / 2:
         modes[0] = 1 if e > 0 else -1
     modes[1], modes[2] = np.int64(np.sign(s[1] - dx)), np.int64(np.sign(s[1]))

@@ -41,8 +41,26 @@ STRENGTHS = {
     "unknown_disturbance": {"A": (4.0, 10.0), "w": (20.0, 50.0), "phi": (-np.pi, np.pi)},
     "speed_stiffness": {"s": (2000.0, 5000.0)},
 }
+RIG_STRENGTHS = {
+    "gravity:off": {"G": (15.0, 45.0), "phi0": (0.2, 1.2)},
+    "transmission_error": {"e": (5e-4, 2e-3), "M": (15.0, 80.0), "psi": (-np.pi, np.pi)},
+    "load_friction": {"mu": (0.05, 0.2)},
+    "relaxation": {"kr": (600.0, 3000.0), "tau_r": (0.02, 0.2)},
+    "contact_exponent": {"p": (1.15, 1.8), "d0": (0.005, 0.005)},
+    "damping_drift": {"r": (0.015, 0.05)},
+    "friction_drift": {"r": (0.015, 0.05)},
+    "disturbance": {"A": (2.0, 10.0), "omega": (15.0, 120.0), "phi": (-np.pi, np.pi)},
+    "sensor_filter": {"tau_f": (0.002, 0.008)},
+    "clock_drift": {"r": (5e-5, 3e-4)},
+    "contact_damping:pushes": {"cc": (10.0, 25.0), "pulls": (0.0, 0.0)},
+    "hunt_crossley:pushes": {"chi": (800.0, 3000.0), "pulls": (0.0, 0.0)},
+}
+"""The same of laws that real rigs add; what stands behind a colon is the form of the law before it."""
 _DRIFTS = ("gap_drift", "stiffness_drift")
-SIGNED = ("gravity", "preload", "asymmetric_gap", "asymmetric_stiffness", "sensor_offset", *_DRIFTS)
+SIGNED = (
+    "gravity", "preload", "asymmetric_gap", "asymmetric_stiffness", "sensor_offset", *_DRIFTS,
+    "gravity:off", "friction_drift", "clock_drift",
+)  # fmt: skip
 OUTSIDE_CATALOGUE = ("unknown_disturbance", "speed_stiffness")
 
 
@@ -109,12 +127,13 @@ def _lines(rng, rms, low, high, corner) -> Multisine:
 
 
 def make_effects(rng, *names: str) -> dict[str, dict[str, float]]:
-    """The named effects with random strengths, ready for `simulate_truth`."""
+    """The named effects with random strengths, ready for `simulate_truth`: of `STRENGTHS` or, in a form, `RIG_STRENGTHS`."""
     effects = {}
     for name in names:
-        draw = {key: float(rng.uniform(*bounds)) for key, bounds in STRENGTHS[name].items()}
+        drawn = STRENGTHS[name] if name in STRENGTHS else RIG_STRENGTHS[name]
+        draw = {key: float(rng.uniform(*bounds)) for key, bounds in drawn.items()}
         if name in SIGNED:
             first = next(iter(draw))
             draw[first] *= rng.choice((-1.0, 1.0))
-        effects[name] = draw
+        effects[name.partition(":")[0]] = draw
     return effects

@@ -13,20 +13,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from tests.independent.generator import measure, simulate_truth
-from tests.independent.rigs import SIGNED, STRENGTHS, Rig, make_excitation
+from tests.independent.rigs import RIG_STRENGTHS, SIGNED, STRENGTHS, Rig, make_excitation
 
 # name -> parameter -> powers of inertia m, angle g and time a in its unit
 _TORQUE, _STIFFNESS, _DAMPING, _SPEED = (1, 1, -2), (1, 0, -2), (1, 0, -1), (0, 1, -1)
 _ONE, _ANGLE, _RATE = (0, 0, 0), (0, 1, 0), (0, 0, -1)
 UNITS = {
-    "gravity": {"G": _TORQUE},
+    "gravity": {"G": _TORQUE, "phi0": _ONE},
     "preload": {"T0": _TORQUE},
     "gap_spring": {"k1": _STIFFNESS},
     "asymmetric_gap": {"z0": _ANGLE},
     "asymmetric_stiffness": {"a": _ONE},
     "cubic_stiffness": {"k3": (1, -2, -2)},
-    "contact_damping": {"cc": _DAMPING},
-    "hunt_crossley": {"chi": (1, -1, -1)},
+    "contact_damping": {"cc": _DAMPING, "pulls": _ONE},
+    "hunt_crossley": {"chi": (1, -1, -1), "pulls": _ONE},
     "coulomb_joint": {"Tc": _TORQUE},
     "stribeck": {"Tc": _TORQUE, "Ts": _TORQUE, "vs": _SPEED},
     "coulomb_ground": {"Tc": _TORQUE},
@@ -40,14 +40,24 @@ UNITS = {
     "stiffness_drift": {"r": _RATE},
     "sensor_delay": {"tau": (0, 0, 1)},
     "sensor_gain": {"g": _ONE},
+    "transmission_error": {"e": _ANGLE, "M": (0, -1, 0), "psi": _ONE},
+    "load_friction": {"mu": _ONE},
+    "relaxation": {"kr": _STIFFNESS, "tau_r": (0, 0, 1)},
+    "contact_exponent": {"p": _ONE, "d0": _ANGLE},
+    "damping_drift": {"r": _RATE},
+    "friction_drift": {"r": _RATE},
+    "disturbance": {"A": _TORQUE, "omega": _RATE, "phi": _ONE},
+    "sensor_filter": {"tau_f": (0, 0, 1)},
+    "clock_drift": {"r": _ONE},
     "unknown_disturbance": {"A": _TORQUE, "w": _RATE, "phi": _ONE},
     "speed_stiffness": {"s": (1, -1, -1)},
 }
 # name -> the parameters that are its size; the others are its shape
 _SIZES = {
     "stribeck": ("Tc", "Ts"), "dahl": ("sigma", "Fc"), "lugre": ("sigma0", "sigma1", "Fc", "Fs"), "bouc_wen": ("sigma", "Fc"),
-    "flexible_link": ("J2", "k2", "c2"),
+    "flexible_link": ("J2", "k2", "c2"), "relaxation": ("kr",),
 }  # fmt: skip
+_ONE_IS_NONE = {"sensor_gain": "g", "contact_exponent": "p"}
 RUBBING = ("coulomb_joint", "stribeck", "dahl", "lugre", "bouc_wen")
 SHAPES = (
     (125.0, 5000), (200.0, 6000), (250.0, 10000), (500.0, 5000), (500.0, 15000), (1000.0, 10000), (1000.0, 20000),
@@ -102,7 +112,7 @@ def make_stranger(rng, hidden: tuple[str, ...], kinds: tuple[str, str], noise: f
     slow, rate, duration = _clock(rng)
     for _ in range(DRAWS):
         rig = _rig(rng)
-        values = {name: _strength(rng, name) for name in hidden}
+        values = {name.partition(":")[0]: _strength(rng, name) for name in hidden}
         # The drive follows the play, within what a servo does.
         size = float(np.clip(rig.backlash / 0.025, 0.5, 1.6) * rng.uniform(0.7, 1.4))
         truth = simulate_truth(rig, values, make_excitation(rng, kind, duration, scale=size), rate, duration)
@@ -115,9 +125,10 @@ def make_stranger(rng, hidden: tuple[str, ...], kinds: tuple[str, str], noise: f
     # A cheap encoder: its count is what limits it.
     step = float(sigma_z * rng.uniform(2.0, 6.0)) if rng.random() < 1.0 / 3.0 else None
     seen = measure(truth, rng, sigma_x, sigma_z, step)
-    scale = Scale(*(float(10.0 ** rng.uniform(-w, w)) for w in (2.0, 0.0 if "gravity" in hidden else 0.5)), slow)
-    if "torque_ripple" in hidden:  # as many teeth as a drive has
-        scale = Scale(scale.inertia, min(scale.angle, values["torque_ripple"]["N"] / 5.0), scale.time)
+    scale = Scale(*(float(10.0 ** rng.uniform(-w, w)) for w in (2.0, 0.0 if "gravity" in values else 0.5)), slow)
+    for name, order in (("torque_ripple", "N"), ("transmission_error", "M")):  # as many teeth as a drive has
+        if name in values:
+            scale = Scale(scale.inertia, min(scale.angle, values[name][order] / 5.0), scale.time)
     last = rng.spawn(1)[0]
     truth = simulate_truth(rig, values, make_excitation(last, other, duration, scale=size), rate, duration)
     again = measure(truth, last, sigma_x, sigma_z, step)
@@ -144,9 +155,10 @@ def _rig(rng) -> Rig:
 
 def _strength(rng, name: str) -> dict[str, float]:
     """The values of one effect: its size between a tenth and three times that of the laboratory, its shape as there."""
-    draw = {key: float(rng.uniform(*bounds)) for key, bounds in STRENGTHS[name].items()}
-    if name == "sensor_gain":
-        return {"g": 1.0 + (draw["g"] - 1.0) * _size(rng)}
+    drawn = STRENGTHS[name] if name in STRENGTHS else RIG_STRENGTHS[name]
+    draw = {key: float(rng.uniform(*bounds)) for key, bounds in drawn.items()}
+    if (key := _ONE_IS_NONE.get(name)) is not None:
+        return draw | {key: 1.0 + (draw[key] - 1.0) * _size(rng)}
     size, sized = _size(rng), _SIZES.get(name, tuple(draw)[:1])
     if name in SIGNED:
         size *= float(rng.choice((-1.0, 1.0)))
