@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 from ..fitting.continuation import SHARP, TIGHTEST
@@ -52,6 +52,7 @@ class EvidenceSearch:
         self.path: list[SearchStep] = []
         self.level: dict[tuple[str, ...], FittedModel] = {}
         self._screened: dict[tuple[frozenset[str], float], list[Candidate]] = {}
+        self._formed: set[tuple[str, frozenset[str], float]] = set()
 
     def run(self) -> list[SearchStep]:
         """The path from the joint alone to the model kept."""
@@ -67,8 +68,7 @@ class EvidenceSearch:
         model = self.clear(model)
         self._note_ranking()
         model = self.fitter.sharpened(model)
-        for neighbour in in_other_forms(self.fitter, model, sorted(model.names)):
-            model = self._fitted(neighbour, model)
+        model = self.in_likeliest_form(model, sorted(model.names))
         self.path[-1] = replace(self.path[-1], model=model)
         if noise_too_large(model) and (factor := self.fitter.too_loud(model)) != 1.0:
             self.fitter.quieter(factor)
@@ -155,25 +155,36 @@ class EvidenceSearch:
         for name in sorted(model.names):
             # Fitted when it was looked at whether fewer laws do.
             without = self.fitter.fitted[model.names - {name}]
-            others = self._with_each(without, self.screened(without), self._family(name))
+            screened = self.screened(without)
+            enough = max((net_gain(c, self.fitter) for c in screened if c.name == name), default=0.0)
+            others = self._with_each(without, screened, self._family(name), enough if leaves_noise(model) else 0.0)
             yield from (n for n in others if n.names != model.names)
 
-    def _with_each(self, model: FittedModel, candidates: list[Candidate], family: str = "") -> Iterator[Neighbour]:
+    def in_likeliest_form(self, model: FittedModel, names: Iterable[str]) -> FittedModel:
+        """A fitted model with some of its laws in the forms that the record makes the likeliest; looked at once for each fit."""
+        for name in names:
+            if (name, model.names, model.criterion) not in self._formed:
+                for neighbour in in_other_forms(self.fitter, model, name):
+                    model = self._fitted(neighbour, model)
+                self._formed.add((name, model.names, model.criterion))
+        return model
+
+    def _with_each(
+        self, model: FittedModel, candidates: list[Candidate], family: str = "", enough: float = 0.0
+    ) -> Iterator[Neighbour]:
         """The model with each of the most promising candidates in turn, and with all that were fitted before; of each family but
         the one named with one candidate.
 
-        One that promises clearly less than one that leaves nothing is not fitted.
+        One that promises clearly less than one that leaves nothing is not fitted; that one may be known, and ``enough`` what it
+        promised.
         """
         beside = {c.name: with_law(self.fitter, model, c) for c in candidates}
         yield from (n for n in beside.values() if n.names in self.fitter.fitted)
-        enough = 0.0
         for candidate in self._promising(model, candidates, beside, family):
             if net_gain(candidate, self.fitter) < CLOSE * enough:
                 break
             yield beside[candidate.name]
-            fitted = self.fitter.fitted[beside[candidate.name].names]
-            yield from in_other_forms(self.fitter, fitted, [candidate.name])
-            fitted = self.fitter.fitted[fitted.names]
+            fitted = self.in_likeliest_form(self.fitter.fitted[beside[candidate.name].names], [candidate.name])
             if leaves_noise(fitted) and self.evidence(model, fitted) > self.demand:
                 enough = max(enough, net_gain(candidate, self.fitter))
 

@@ -6,7 +6,7 @@ simpler one takes its place. `evidence_search` says which moves are tried; `mode
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from ..mechanics import AbstractEffect, canonical_name
@@ -52,11 +52,10 @@ def with_law(fitter: ModelFitter, model: FittedModel, candidate: Candidate) -> N
     return Neighbour(effects, with_values(model.system, candidate.moved) if candidate.effect.states else None)
 
 
-def in_other_forms(fitter: ModelFitter, model: FittedModel, names: Iterable[str]) -> Iterator[Neighbour]:
-    """A fitted model with some of its laws in their other forms, one at a time: the same laws by name."""
-    for name in names:
-        for form in fitter.effects(model)[name].forms():
-            yield Neighbour({**fitter.effects(model), name: form}, near=model)
+def in_other_forms(fitter: ModelFitter, model: FittedModel, name: str) -> Iterator[Neighbour]:
+    """A fitted model with one of its laws in each of its other forms: the same laws by name."""
+    for form in fitter.effects(model)[name].forms():
+        yield Neighbour({**fitter.effects(model), name: form}, near=model)
 
 
 def without_law(fitter: ModelFitter, model: FittedModel, name: str) -> Neighbour:
