@@ -74,3 +74,14 @@ def test_practice_records(name):
     assert found.verdict.complete
     assert found.fit.score.median < 1.05
     assert found.fit.heldout.median < 1.1
+
+
+@pytest.mark.slow
+def test_what_a_held_out_record_does_not_bear_out_is_not_added():
+    """The second record is of the same joint after what had pulled at it was taken away."""
+    found = jb.refine(record(HIDDEN["gravity"]), heldout=record({}, seed=4), inertia=RIG.inertia)
+    assert found.effects == ()
+    assert not found.verdict.complete
+    assert "gravity would lower the error here" in found.verdict.text
+    assert found.verdict.text.endswith("it is not added.")
+    assert found.fit.heldout.median < 1.1

@@ -38,7 +38,7 @@ from .model_fitter import ModelFitter
 from .refinement import Refinement
 from .steps import Stage
 from .unnamed import unnamed
-from .verdict import judge_rest
+from .verdict import borne_out, judge_rest, not_added
 
 SEPARATED = 2
 """Alternatives for which an experiment is looked for."""
@@ -117,18 +117,23 @@ def refine(
     clock["search"] = time.perf_counter()
 
     progress("scoring predictions", 0.85)
+    fits = [judged(step.model) for step in steps]
+    added = fits[-1]
+    if (count := borne_out(fits)) < len(fits):
+        refused = sorted(steps[-1].model.names - steps[count - 1].model.names)
+        search.level, steps, fits = {}, steps[:count], fits[:count]
     kept = steps[-1].model
-    told = judged(kept)
-    settled(told)
-    last = averaged(told, kept, tuple(search.level.values()))
-    if last is not told:
+    settled(fits[-1])
+    last = averaged(fits[-1], kept, tuple(search.level.values()))
+    if last is not fits[-1]:
         settled(last)
-    fits = [*(judged(s.model) for s in steps[:-1]), last]
+    against = not_added(last, added, refused) if added is not fits[-1] else ""
+    fits[-1] = last
     stages = tuple(Stage(s.added, s.dropped, fit, s.ranking, s.evidence, s.refits) for s, fit in zip(steps, fits))
     clock["score"] = time.perf_counter()
     others = tuple(sorted(search.level, key=lambda names: search.level[names].criterion))
     verdict = judge_rest(kept, [s.fit for s in stages], unnamed(fitter, kept))
-    verdict = replace(verdict, text=f"{verdict.text} {few_counts(last)}".rstrip())
+    verdict = replace(verdict, text=f"{verdict.text} {against} {few_counts(last)}".strip())
     experiments = []
     for names in others[:SEPARATED]:
         progress(f"looking for an experiment that separates {' + '.join(names)}", 0.88)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..fitting import Fit, error_in_words
@@ -35,7 +36,7 @@ def judge_rest(final: FittedModel, fits: list[Fit], beyond: Unnamed | None = Non
     most = most_of_noise(final)
     strained = [name for name in sorted(final.names) if at_a_limit(final, name)]
     here = final.misfit < most and last.score.median < NEARLY and not strained and beyond is None
-    against = _elsewhere(first, last, here)
+    against = _elsewhere(last, here)
     if here:
         return Verdict(not against, _what_explains(final, first, last, against), here)
     added = f" with {', '.join(sorted(final.names))} added" if final.names else ""
@@ -82,14 +83,34 @@ def _few(last: Fit) -> str:
     )
 
 
-def _elsewhere(first: Fit, last: Fit, here: bool) -> str:
-    """What a held-out record says against a model, nothing where it says nothing against it."""
+def borne_out(fits: Sequence[Fit]) -> int:
+    """How many models of a search's path are kept: the last is one that misses the held-out record by no more than every model
+    before it does. What fits one record and not the other is not added."""
+    count = len(fits)
+    while count > 1 and any(_rises(before, fits[count - 1]) for before in fits[: count - 1]):
+        count -= 1
+    return count
+
+
+def not_added(kept: Fit, refused: Fit, names: Sequence[str]) -> str:
+    """What is said of laws that the search had added and the held-out record does not bear out."""
+    assert kept.heldout is not None
+    assert refused.heldout is not None
+    them, lower = "it is" if len(names) == 1 else "they are", error_in_words(refused.score)
+    return (
+        f"{' and '.join(names)} would lower the error here from {kept.score.rms:.3g} to {lower}, but raise it on the held-out "
+        f"record from {kept.heldout.rms:.3g} to {refused.heldout.rms:.3g}: {them} not added."
+    )
+
+
+def _rises(first: Fit, last: Fit) -> bool:
+    """Whether the error on the held-out record is clearly larger with the second model."""
     before, after = first.heldout, last.heldout
-    if before is None or after is None:
-        return ""
-    if last is not first and after.rms > NEARLY * before.rms and after.median > AT_NOISE:
-        rises = f"On the held-out record the error rises from {before.rms:.3g} to {error_in_words(after)}: "
-        return rises + "what was added stands in for something else."
-    if here and after.median > NEARLY:
-        return f"The held-out record is still missed, by {error_in_words(after)}: something else is at work there."
+    return before is not None and after is not None and after.rms > NEARLY * before.rms and after.median > AT_NOISE
+
+
+def _elsewhere(last: Fit, here: bool) -> str:
+    """What a held-out record says against a model, nothing where it says nothing against it."""
+    if here and last.heldout is not None and last.heldout.median > NEARLY:
+        return f"The held-out record is still missed, by {error_in_words(last.heldout)}: something else is at work there."
     return ""
