@@ -80,6 +80,11 @@ class System(eqx.Module):
         """True when steps should be located: there is a play, or dry friction."""
         return self.has_play or bool(self.slides)
 
+    @property
+    def play_moves(self) -> bool:
+        """Whether the edges of the play may move with time or with the base."""
+        return any(type(effect).reshape is not AbstractEffect.reshape for effect in self.effects.values())
+
     def edges(self, t: Scalar, x: Scalar = 0.0) -> tuple[Scalar, Scalar]:
         """Lower and upper edge of the play at time ``t`` with the base at ``x`` [rad]."""
         play = self._play(t, x)

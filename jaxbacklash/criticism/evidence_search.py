@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from ..fitting.continuation import SHARP, TIGHTEST
@@ -68,7 +68,9 @@ class EvidenceSearch:
         model = self.clear(model)
         self._note_ranking()
         model = self.fitter.sharpened(model)
-        model = self.in_likeliest_form(model, sorted(model.names))
+        for name in sorted(model.names):
+            for neighbour in self._in_other_forms(model, name):
+                model = self._fitted(neighbour, model)
         self.path[-1] = replace(self.path[-1], model=model)
         if noise_too_large(model) and (factor := self.fitter.too_loud(model)) != 1.0:
             self.fitter.quieter(factor)
@@ -160,14 +162,11 @@ class EvidenceSearch:
             others = self._with_each(without, screened, self._family(name), enough if leaves_noise(model) else 0.0)
             yield from (n for n in others if n.names != model.names)
 
-    def in_likeliest_form(self, model: FittedModel, names: Iterable[str]) -> FittedModel:
-        """A fitted model with some of its laws in the forms that the record makes the likeliest; looked at once for each fit."""
-        for name in names:
-            if (name, model.names, model.criterion) not in self._formed:
-                for neighbour in in_other_forms(self.fitter, model, name):
-                    model = self._fitted(neighbour, model)
-                self._formed.add((name, model.names, model.criterion))
-        return model
+    def _in_other_forms(self, model: FittedModel, name: str) -> Iterator[Neighbour]:
+        """A fitted model with one of its laws in each of its other forms, unless that was looked at."""
+        if (name, model.names, model.criterion) not in self._formed:
+            yield from in_other_forms(self.fitter, model, name)
+            self._formed.add((name, model.names, self.fitter.fitted[model.names].criterion))
 
     def _with_each(
         self, model: FittedModel, candidates: list[Candidate], family: str = "", enough: float = 0.0
@@ -184,7 +183,9 @@ class EvidenceSearch:
             if net_gain(candidate, self.fitter) < CLOSE * enough:
                 break
             yield beside[candidate.name]
-            fitted = self.in_likeliest_form(self.fitter.fitted[beside[candidate.name].names], [candidate.name])
+            fitted = self.fitter.fitted[beside[candidate.name].names]
+            yield from self._in_other_forms(fitted, candidate.name)
+            fitted = self.fitter.fitted[fitted.names]
             if leaves_noise(fitted) and self.evidence(model, fitted) > self.demand:
                 enough = max(enough, net_gain(candidate, self.fitter))
 

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple, Protocol
 import jax
 import jax.numpy as jnp
 
-from .panels import SHARES, WEIGHTS, Cubic, Scalar, State, _add, _first_crossing, _first_kink, _side
+from .panels import SHARES, WEIGHTS, Cubic, Edges, Scalar, State, _add, _first_kink
 
 SOON = 1e-4
 """Share of a panel within which an event counts as met: a fraction of a microsecond."""
@@ -32,6 +32,9 @@ class Sliding(Protocol):
 
     @property
     def has_play(self) -> bool: ...
+
+    @property
+    def play_moves(self) -> bool: ...
 
     def edges(self, t: Scalar, x: Scalar) -> tuple[Scalar, Scalar]: ...
 
@@ -103,7 +106,7 @@ def _turned(speed: Scalar, slip: Scalar, before: Scalar, pull: Scalar, capacity:
 
 def advance_dry(system: Sliding, t: Scalar, state: State, drive_at: Any, base: Cubic, h: Scalar) -> State:
     """Advance the state over one panel; the arguments are those of `panels.advance`."""
-    low, high = system.edges(t, base.a) if system.has_play else (0.0, 0.0)
+    edges = Edges.over(system, t, base, h) if system.has_play else None
     soon = SOON * h
     # On a base at rest both frictions oppose one speed and are one.
     resting = (base.b == 0.0) & (base.c == 0.0) & (base.d == 0.0)
@@ -114,8 +117,8 @@ def advance_dry(system: Sliding, t: Scalar, state: State, drive_at: Any, base: C
             joint, ground = jnp.where(resting, joint + ground, joint), jnp.where(resting, 0.0, ground)
         return rates, Moment(rates[1], joint, ground, base.bend(at))
 
-    def region(z: Scalar) -> Any:
-        return _side(z, low, high) if system.has_play else None
+    def region(z: Scalar, at: Scalar) -> Any:
+        return None if edges is None else edges.side(z, at)
 
     def piece(carry: Any, last: Any) -> Any:
         state, begin, met, side = carry
@@ -129,11 +132,12 @@ def advance_dry(system: Sliding, t: Scalar, state: State, drive_at: Any, base: C
         acceleration = mode.acceleration(start)
         ddz = acceleration - start.base
         kink = _first_kink(system.kinks(t + begin, state, drive_at(begin), side, ddz), rest)
-        event, met = _first_event(system, (z, low, high), (dz, dy), (ddz, acceleration), kink, rest, soon)
+        edge = rest if edges is None else edges.first_crossing(begin, z, dz, ddz, rest)
+        event, met = _first_event(system.slides, (dz, dy), (ddz, acceleration), jnp.minimum(edge, kink), rest, soon)
         step, met = jnp.where(last, rest, event), tuple(m & ~last for m in met)
         if side is not None:
             half = 0.5 * step
-            side = jnp.where(last, side, region(z + half * (dz + 0.5 * half * (acceleration - start.base))))
+            side = jnp.where(last, side, region(z + half * (dz + 0.5 * half * ddz), begin + half))
 
         def stage(carry: Any, at: Any) -> Any:
             slope, total, _ = carry
@@ -150,38 +154,34 @@ def advance_dry(system: Sliding, t: Scalar, state: State, drive_at: Any, base: C
         state = _put_right(system.slides, state, mode, (start, end), base.slope(begin), step, met)
         half = 0.5 * (h - begin)
         z, dz = state[0] - base.at(begin), state[1] - base.slope(begin)
-        side = region(z + half * (dz + 0.5 * half * (mode.acceleration(end) - end.base)))
+        side = region(z + half * (dz + 0.5 * half * (mode.acceleration(end) - end.base)), begin + half)
         return (state, begin, met, side), None
 
     no = jnp.zeros_like(state[0], dtype=bool)
     # Loops, here and over the stages, not copies: with many laws the compiler makes ten times the work of their derivative.
-    begun: Any = (state, jnp.zeros_like(state[0]), (no, no), region(state[0] - base.a))
+    begun: Any = (state, jnp.zeros_like(state[0]), (no, no), region(state[0] - base.a, 0.0))
     (state, *_), _ = jax.lax.scan(piece, begun, jnp.array([False, True]))
     return state
 
 
 def _first_event(
-    system: Sliding, place: tuple[Scalar, Scalar, Scalar], speeds: tuple[Scalar, Scalar], accelerations: tuple[Scalar, Scalar],
-    kink: Scalar, rest: Scalar, soon: Scalar,
+    slides: tuple[str, ...], speeds: tuple[Scalar, Scalar], accelerations: tuple[Scalar, Scalar], switch: Scalar, rest: Scalar,
+    soon: Scalar,
 ) -> tuple[Scalar, tuple[Scalar, Scalar]]:  # fmt: skip
-    """Time to the first event ahead, that of the next ``kink`` among them, or half of what is left, and whether it is that the
-    joint's or the link's speed is zero."""
+    """Time to the first event ahead, that of the next ``switch`` of the law among them, or half of what is left, and whether it
+    is that the joint's or the link's speed is zero."""
 
     def stop(speed: Scalar, acceleration: Scalar) -> Scalar:
         slowing = speed * acceleration < 0.0
         time = -speed / jnp.where(slowing, acceleration, 1.0)
         return jnp.where(slowing & (time > soon) & (time < rest), time, rest)
 
-    z, low, high = place
-    edge, stop_z, stop_y = rest, rest, rest
-    if system.has_play:
-        ahead = (speeds[0], accelerations[0], rest)
-        edge = jnp.minimum(_first_crossing(z - low, *ahead), _first_crossing(z - high, *ahead))
-    if "joint" in system.slides:
+    stop_z, stop_y = rest, rest
+    if "joint" in slides:
         stop_z = stop(speeds[0], accelerations[0])
-    if "ground" in system.slides:
+    if "ground" in slides:
         stop_y = stop(speeds[1], accelerations[1])
-    event = jnp.minimum(jnp.minimum(edge, kink), jnp.minimum(stop_z, stop_y))
+    event = jnp.minimum(switch, jnp.minimum(stop_z, stop_y))
     found = event < rest
     return jnp.where(found, event, 0.5 * rest), (found & (stop_z <= event), found & (stop_y <= event))
 

@@ -2,9 +2,9 @@ r"""A panel: a short step over which the drive is a cubic, split where the link 
 
 Between switches the law is smooth, so fourth-order Runge-Kutta keeps its order if no step straddles a switch. Each
 panel is two steps; when the link crosses an edge inside the panel, the two meet there, else they meet in the middle.
-The crossing is predicted from :math:`z, \dot z, \ddot z` at the start of the panel. A miss by :math:`\epsilon` in time
-costs :math:`k v \epsilon^2 / 2J` in speed, since the law of the region is carried on over the miss; :math:`\epsilon` is of
-third order in the step, so the whole stays of fourth order for laws that are continuous at the edge.
+The crossing is predicted from :math:`z, \dot z, \ddot z` at the start of the panel, against edges that may move. A miss by
+:math:`\epsilon` in time costs :math:`k v \epsilon^2 / 2J` in speed, since the law of the region is carried on over the miss;
+:math:`\epsilon` is of third order in the step, so the whole stays of fourth order for laws that are continuous at the edge.
 """
 
 from __future__ import annotations
@@ -61,6 +61,9 @@ class Switching(Protocol):
 
     def rates(self, t: Scalar, state: State, drive: Any, side: Scalar | None = None) -> State: ...
 
+    @property
+    def play_moves(self) -> bool: ...
+
     def edges(self, t: Scalar, x: Scalar) -> tuple[Scalar, Scalar]: ...
 
     def kinks(self, t: Scalar, state: State, drive: Any, side: Scalar | None, ddz: Scalar) -> list[tuple[Scalar, Scalar]]: ...
@@ -92,10 +95,6 @@ def _rk4_in_turns(rates: Any, t: Scalar, state: State, h: Scalar, first: State) 
     return _add(state, total, h / 6.0)
 
 
-def _side(z: Scalar, low: Scalar, high: Scalar) -> Scalar:
-    return jnp.where(z > high, 1.0, jnp.where(z < low, -1.0, 0.0))
-
-
 def _first_crossing(gap: Scalar, speed: Scalar, acceleration: Scalar, h: Scalar) -> Scalar:
     """First time in (0, h) at which ``gap + speed t + acceleration t^2 / 2`` is zero, or ``h`` if it never is."""
     square = speed**2 - 2.0 * acceleration * gap
@@ -108,6 +107,48 @@ def _first_crossing(gap: Scalar, speed: Scalar, acceleration: Scalar, h: Scalar)
         valid = (square > 0.0) & (time > 0.0) & (time < h) & (jnp.abs(denominator) > 1e-30)
         best = jnp.where(valid & (time < best), time, best)
     return best
+
+
+class Edges(NamedTuple):
+    """The edges of the play over one panel, each its place at the start, its speed and half its acceleration there: they move
+    where the play wears, or a gear's error shifts it."""
+
+    low: tuple[Scalar, Scalar, Scalar]
+    high: tuple[Scalar, Scalar, Scalar]
+
+    @classmethod
+    def over(cls, system: Switching, t: Scalar, base: Cubic, h: Scalar) -> Edges:
+        """The edges of a system from ``t`` on, the base moving as ``base``: parabolas through three moments of a panel."""
+        begin = system.edges(t, base.a)
+        if not system.play_moves:
+            return cls(*((edge, 0.0, 0.0) for edge in begin))
+        middle, end = (system.edges(t + part * h, base.at(part * h)) for part in (0.5, 1.0))
+        return cls(*(_parabola(*moving, h) for moving in zip(begin, middle, end)))
+
+    def side(self, z: Scalar, tau: Scalar) -> Scalar:
+        """On which side of the play the link is at ``z``: 1 above, -1 below, 0 inside."""
+        (low, *_), (high, *_) = (_moved(edge, tau) for edge in self)
+        return jnp.where(z > high, 1.0, jnp.where(z < low, -1.0, 0.0))
+
+    def first_crossing(self, tau: Scalar, z: Scalar, dz: Scalar, ddz: Scalar, rest: Scalar) -> Scalar:
+        """Time from ``tau`` on to the first meeting with an edge, or ``rest`` if there is none before."""
+        ahead = []
+        for place, speed, half in (_moved(edge, tau) for edge in self):
+            ahead.append(_first_crossing(z - place, dz - speed, ddz - 2.0 * half, rest))
+        return jnp.minimum(*ahead)
+
+
+def _parabola(begin: Scalar, middle: Scalar, end: Scalar, h: Scalar) -> tuple[Scalar, Scalar, Scalar]:
+    early, late = middle - begin, end - middle
+    return begin, (3.0 * early - late) / h, 2.0 * (late - early) / h**2
+
+
+def _moved(edge: tuple[Scalar, Scalar, Scalar], tau: Scalar) -> tuple[Scalar, Scalar, Scalar]:
+    """An edge after a time ``tau``: a number that is no array says that it stays where it is."""
+    place, speed, half = edge
+    if isinstance(speed, float):
+        return edge
+    return place + tau * (speed + tau * half), speed + 2.0 * tau * half, half
 
 
 def _first_kink(kinks: list[tuple[Scalar, Scalar]], h: Scalar) -> Scalar:
@@ -131,48 +172,48 @@ def advance(system: Switching, t: Scalar, state: State, drive_at: Any, base: Cub
     base : base motion x over the panel [rad]
     h : length of the panel [s]
     """
-    low, high = system.edges(t, base.a)
+    edges = Edges.over(system, t, base, h)
     z, dz = state[0] - base.a, state[1] - base.b
-    side = _side(z, low, high)
+    side = edges.side(z, 0.0)
     first = system.rates(t, state, drive_at(0.0), side)
     ddz = first[1] - 2.0 * base.c
 
-    crossing = jnp.minimum(_first_crossing(z - low, dz, ddz, h), _first_crossing(z - high, dz, ddz, h))
+    crossing = edges.first_crossing(0.0, z, dz, ddz, h)
     crossing = jnp.minimum(crossing, _first_kink(system.kinks(t, state, drive_at(0.0), side, ddz), h))
     split = jnp.where(crossing < h, crossing, 0.5 * h)
 
     half = 0.5 * split
-    side = _side(z + half * (dz + 0.5 * half * ddz), low, high)
+    side = edges.side(z + half * (dz + 0.5 * half * ddz), half)
     middle = rk4(lambda s, q: system.rates(t + s, q, drive_at(s), side), 0.0, state, split, first)
 
     rest = h - split
     z, dz = middle[0] - base.at(split), middle[1] - base.slope(split)
     half = 0.5 * rest
-    side = _side(z + half * (dz + 0.5 * half * ddz), low, high)
+    side = edges.side(z + half * (dz + 0.5 * half * ddz), split + half)
     return rk4(lambda s, q: system.rates(t + s, q, drive_at(s), side), split, middle, rest)
 
 
 def advance_in_turns(system: Switching, t: Scalar, state: State, drive_at: Any, base: Cubic, h: Scalar) -> State:
     """As `advance`, in loops over the two steps and their stages: slower where the laws are few, and where they are many with
     internal states among them the compiler, for which every stage is as much work as all laws, takes half as long."""
-    low, high = system.edges(t, base.a)
+    edges = Edges.over(system, t, base, h)
 
     def step(carry: Any, last: Any) -> Any:
         state, begin, side = carry
         rest = h - begin
         first = system.rates(t + begin, state, drive_at(begin), side)
         z, dz, ddz = state[0] - base.at(begin), state[1] - base.slope(begin), first[1] - base.bend(begin)
-        crossing = jnp.minimum(_first_crossing(z - low, dz, ddz, rest), _first_crossing(z - high, dz, ddz, rest))
+        crossing = edges.first_crossing(begin, z, dz, ddz, rest)
         crossing = jnp.minimum(crossing, _first_kink(system.kinks(t + begin, state, drive_at(begin), side, ddz), rest))
         length = jnp.where(last, rest, jnp.where(crossing < rest, crossing, 0.5 * rest))
         half = 0.5 * length
-        side = jnp.where(last, side, _side(z + half * (dz + 0.5 * half * ddz), low, high))
+        side = jnp.where(last, side, edges.side(z + half * (dz + 0.5 * half * ddz), begin + half))
         state = _rk4_in_turns(lambda s, q: system.rates(t + s, q, drive_at(s), side), begin, state, length, first)
         begin = begin + length
         z, dz, half = state[0] - base.at(begin), state[1] - base.slope(begin), 0.5 * (h - begin)
-        return (state, begin, _side(z + half * (dz + 0.5 * half * ddz), low, high)), None
+        return (state, begin, edges.side(z + half * (dz + 0.5 * half * ddz), begin + half)), None
 
-    begun: Any = (state, jnp.zeros_like(state[0]), _side(state[0] - base.a, low, high))
+    begun: Any = (state, jnp.zeros_like(state[0]), edges.side(state[0] - base.a, 0.0))
     (state, *_), _ = jax.lax.scan(step, begun, jnp.array([False, True]))
     return state
 
