@@ -17,6 +17,7 @@ def searched(name, kind, seed, seconds=6.0, **values):
     return search, search.run()[-1].model, rig, effects
 
 
+@pytest.mark.slow
 def test_nothing_is_added_where_nothing_hides():
     search, model, rig, _ = searched(None, "multisine", 3)
     assert not model.names
@@ -25,6 +26,7 @@ def test_nothing_is_added_where_nothing_hides():
     assert model.value["backlash"] == pytest.approx(rig.backlash, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_a_hidden_weight_is_named_at_its_size():
     search, model, _, effects = searched("gravity", "multisine", 4, G=20.0)
     assert model.names == {"gravity"}

@@ -164,6 +164,7 @@ def test_practice_records_without_anything_missing(shared, name):
     assert 0.95 < found.heldout.median < 1.05
 
 
+@pytest.mark.slow
 @pytest.mark.shared
 def test_motor_driven_axis(shared):
     """EMPS, published values of PROVENANCE: M 95.1089 kg, Fv 203.5034 N s/m, Fc 20.3935 N."""

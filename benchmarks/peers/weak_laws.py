@@ -2,7 +2,8 @@
 
 Three kinds of laws. `LINEAR`: one column each, strength at once. `SHAPED`: columns for a given shape (a speed, an order, a
 length, a resonance), which comes from a grid and then from Gauss-Newton. `BENT`: a parameter of the play or of the sensor, which
-enters everything and comes from Gauss-Newton alone. dahl stands for its family (lugre, bouc_wen). A sensor's offset is not
+enters everything and comes from Gauss-Newton alone. dahl stands for its family (lugre, bouc_wen). The laws that only
+real rigs add, `benchmarks.effect_recovery.RIG_SINGLES`, are not known to it. A sensor's offset is not
 listed: beside a play whose centre is free only gravity could tell it.
 """
 
