@@ -174,6 +174,12 @@ class Hand:
             self.page.keyboard.press("ArrowRight")
         raise AssertionError(f"the arrow keys do not come to the part {name!r}")
 
+    def listen(self):
+        """What the page is sent from its next load on, as a list that grows."""
+        frames = []
+        self.page.on("websocket", lambda one: one.on("framereceived", lambda frame: frames.append(frame)))
+        return frames
+
     def models(self):
         """The models at the side, as they are told."""
         return self.page.get_by_role("radio").evaluate_all("all => all.map(one => one.closest('label').innerText)")

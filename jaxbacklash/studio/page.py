@@ -22,7 +22,7 @@ from .preference import Preference
 from .session import Session
 
 PARTS = (RecordPart, ModelPart, FailurePart, MissingPart, ValuesPart, ComparePart, KeepPart)
-EVERY = 200
+EVERY = 100
 """Milliseconds between two looks at whether there is something new."""
 NAMELESS = {"& .MuiLinearProgress-root": {"display": "none"}}
 """The toolkit's own sign of work has no name for a screen reader; `StatusPart` tells what is computed."""
@@ -53,7 +53,8 @@ def page(session: Session, gallery: Gallery, aside: ThreadPoolExecutor) -> Any:
 
     tabs.param.watch(lambda _: look(), "active")
     look()
-    pn.state.add_periodic_callback(look, period=EVERY)
+    # In the background: else Panel tells the browser at each look that it is busy, and that it is not.
+    pn.io.PeriodicCallback(callback=look, period=EVERY, background=True).start()
     preference: Any = Preference(width=0, height=0, margin=0)
     side = pn.Column(status.content, preference, styles=SIDE)
     main = pn.Column(tabs, styles=MAIN)
