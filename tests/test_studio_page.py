@@ -190,6 +190,21 @@ def swaying(seconds, seed):
 
 
 @pytest.mark.slow
+def test_the_page_is_dark_where_the_browser_prefers_dark_ones(chromium, bench):
+    dark = "parseInt(getComputedStyle(document.body).backgroundColor.match(/\\d+/)[0]) < 64"
+    with studio(bench) as url:
+        hand = Hand(chromium, url, scheme="dark")
+        hand.page.wait_for_function(dark, timeout=20_000)
+        hand.page.emulate_media(color_scheme="light")
+        hand.page.wait_for_function(f"!({dark})", timeout=20_000)
+        other = Hand(chromium, url)
+        other.page.wait_for_timeout(2000)
+        assert not other.page.evaluate(dark)
+        other.page.emulate_media(color_scheme="dark")
+        other.page.wait_for_function(dark, timeout=20_000)
+
+
+@pytest.mark.slow
 def test_an_idle_page_is_sent_nothing(chromium, bench):
     with studio(bench, str(bench / "run1.csv")) as url:
         hand = Hand(chromium, url)

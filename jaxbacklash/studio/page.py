@@ -61,4 +61,5 @@ def page(session: Session, gallery: Gallery, aside: ThreadPoolExecutor) -> Any:
     both = pn.FlexBox(side, main, **WIDE)
     whole: Any = pmui.Page(title="jaxbacklash studio", main=[both], sx=NAMELESS)
     preference.param.watch(lambda event: setattr(whole, "dark_theme", event.new), "dark")
+    preference.ask()
     return whole
