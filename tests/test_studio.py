@@ -252,6 +252,16 @@ def test_another_record_or_setup_forgets_the_models(session):
     assert len(session.tree) == 0
 
 
+def test_what_was_wrong_before_is_not_said_beside_new_work(session):
+    session.open(Choice("run1.csv"))
+    for act in (session.begin, session.refine):
+        session.say("inertia 'heavy': wanted a number, or nothing", bad=True)
+        act()
+        assert (session.message, session.bad) == ("", False)
+        session.stop()
+        assert session.worker.wait(LONG)
+
+
 @pytest.mark.slow
 def test_the_whole_loop_and_the_python_that_repeats_it(session, folder):
     session.open(Choice("run1.csv").with_words("--to 4"))

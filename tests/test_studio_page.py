@@ -91,6 +91,11 @@ def test_the_whole_loop_by_keyboard_alone(chromium, bench):
         hand.idle()
         hand.shown("group", re.compile("^The error falling"))
         hand.sound()
+        hand.push("Search for all that is missing")
+        hand.shown("heading", "What the search found")
+        hand.says("Missing in the base model: gravity.")
+        hand.idle()
+        hand.sound()
 
         hand.part("Move parameters")
         hand.to("slider", re.compile("backlash"))

@@ -131,6 +131,7 @@ class Session:
                     self.refinement = found
                     self._say("the search has ended; what it found stands under What is missing")
 
+            self._say("")
             arguments = record, held, self.setup
             self.worker.submit(Job("search for all that is missing", work.refine, arguments, keep, self._failed))
 
@@ -220,6 +221,7 @@ class Session:
                     self._judge(tree.add(parent, effects, fit))
                     self._say("")
 
+        self._say("")
         title = "fit " + " + ".join(["base model", *effects])
         self.worker.submit(Job(title, work.fit_model, (record, held, self.setup, effects), keep, self._failed))
 

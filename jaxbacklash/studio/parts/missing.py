@@ -7,6 +7,7 @@ from typing import Any
 import panel as pn
 
 from ...plot.style import format_evidence, short
+from ...report.fit_cards import of_refinement
 from .. import work
 from ..select import select
 from .part import WIDE, Desk, Figures, Part, button, escaped, row, same, table, text
@@ -54,7 +55,7 @@ class MissingPart(Part):
         if not same(self._of, (model, found)):
             self._of = model, found
             self._told(model)
-            self.found.object = "" if found is None else f"<h3>What the search found</h3><pre>{escaped(found)}</pre>"
+            self.found.object = "" if found is None else _found(found)
             self.take.visible = found is not None and bool(found.effects) and known
         path = self.session.tree.path(model.number) if known else []
         self.fallen.show([("stages", *(one.fit for one in path))] if len(path) > 1 else [])
@@ -79,6 +80,16 @@ class MissingPart(Part):
         heads = ["effect", "error over the noise with it", "evidence", "how it is known", "its values"]
         none = "" if any(one.evidence > 0.0 for one in model.ranking) else f"<p>{NONE}</p>"
         self.told.object = none + table(f"What one more effect would bring to: {model.name}", heads, rows)
+
+
+def _found(refinement: Any) -> str:
+    """What the search found, as its card tells it: sentences, the stages, the parameters at both ends."""
+    card = of_refinement(refinement)
+    said = "".join(f"<p>{escaped(sentence)}</p>" for sentence in card.sentences if sentence)
+    titles = "Stages of the search", "Parameters"
+    return f"<h3>What the search found</h3>{said}" + "".join(
+        table(title, one.heads, one.rows) for title, one in zip(titles, card.grids, strict=True)
+    )
 
 
 def _values(entry: Any) -> str:

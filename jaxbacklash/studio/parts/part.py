@@ -26,7 +26,7 @@ p { margin: 0.3em 0; } ul { margin: 0.3em 0; padding-left: 1.2em; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; } caption { text-align: left; font-weight: bold; padding: 0.3em 0; }
 th, td { text-align: left; padding: 3px 14px 3px 0; border-bottom: 1px solid rgba(128, 128, 128, 0.4); vertical-align: top; }
-td:last-child { min-width: 8em; }
+td { white-space: pre-line; } td:last-child { min-width: 8em; }
 pre { white-space: pre-wrap; overflow-wrap: anywhere; font-size: 0.85rem; }
 progress { width: 100%; } code { white-space: nowrap; }
 .bad { border-left: 4px solid #c62828; padding-left: 8px; }
