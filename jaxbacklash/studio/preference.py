@@ -21,7 +21,7 @@ export function render({model}) {
 class Preference(JSComponent):
     """Takes no room on the page; ``dark`` is True where the browser prefers dark pages, and goes with its setting.
 
-    The browser is ``asked`` once the page is there: what it tells while the page is still being put together does not reach Python.
+    The browser is ``asked`` once the page is there: what it tells while that is still being put together does not reach Python.
     """
 
     dark = param.Boolean(default=False)
