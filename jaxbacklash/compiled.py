@@ -124,7 +124,13 @@ class _Here:
 
 
 def _kinds(leaves: list[Any]) -> tuple[Any, ...]:
-    return tuple((a.shape, str(a.dtype), bool(getattr(a, "weak_type", False))) for a in leaves if _is_array(a))
+    return tuple((a.shape, _called(a.dtype), bool(getattr(a, "weak_type", False))) for a in leaves if _is_array(a))
+
+
+@functools.cache
+def _called(dtype: Any) -> str:
+    """The name of a kind of numbers; numpy takes longer to make it up than to look it up."""
+    return str(dtype)
 
 
 def _is_array(leaf: Any) -> bool:

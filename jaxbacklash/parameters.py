@@ -8,6 +8,7 @@ inertia have bare names.
 from __future__ import annotations
 
 import dataclasses
+import functools
 from typing import Any, TypeVar
 
 import equinox as eqx
@@ -76,20 +77,27 @@ def param(*, default: float | None = None, required: bool = False, **spec: Any) 
     return eqx.field(**keywords)
 
 
+@functools.cache
+def _fields(cls: type[Any]) -> tuple[tuple[str, Spec | None, bool], ...]:
+    """Name, description and whether it lends no name to what it holds, of each field of a class that may hold parameters."""
+    return tuple(
+        (field.name, field.metadata.get("spec"), field.metadata.get("bare", False))
+        for field in dataclasses.fields(cls)
+        if not field.metadata.get("static", False)
+    )
+
+
 def _walk(node: Any, prefix: str) -> list[tuple[str, Spec]]:
     if node is None:
         return []
     if isinstance(node, dict):  # pytrees sort the keys of a dict, so names must follow
         return [pair for key in sorted(node) for pair in _walk(node[key], f"{prefix}{key}.")]
     found: list[tuple[str, Spec]] = []
-    for field in dataclasses.fields(node):
-        if field.metadata.get("static", False):
-            continue
-        if "spec" in field.metadata:
-            found.append((prefix + field.name, field.metadata["spec"]))
+    for name, spec, bare in _fields(type(node)):
+        if spec is not None:
+            found.append((prefix + name, spec))
         else:
-            bare = field.metadata.get("bare", False)
-            found += _walk(getattr(node, field.name), prefix if bare else f"{prefix}{field.name}.")
+            found += _walk(getattr(node, name), prefix if bare else f"{prefix}{name}.")
     return found
 
 

@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import equinox as eqx
 import numpy as np
 
+from ..fitting.continuation import tied
 from ..mechanics import AbstractEffect
 from ..parameters import free_specs, specs, with_values
 from ..regression.spectrum import read_off
@@ -105,8 +105,7 @@ def _score(builder: ModelBuilder, model: FittedModel, shapes: dict[str, Abstract
     problem, _ = builder.problem(
         builder.effects(model), model.system, extra=[f"{name}.{n}" for name, n in columns], shapes=shapes
     )
-    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(model.tie))
-    information, score, scales = builder.sensitivities(problem, model.unknowns)
+    information, score, scales = builder.sensitivities(tied(problem, model.tie), model.unknowns)
     q, present = len(model.free), model.value
     found = []
     for name in group:

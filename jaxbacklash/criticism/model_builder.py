@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-import equinox as eqx
 import numpy as np
 
 from ..fitting.fit import prepare
@@ -68,6 +67,7 @@ class ModelBuilder:
         self.static: dict[str, type[AbstractEffect]]
         self.take_laws(laws_for(base))
         self.weak_form = WeakForm(record)
+        self._scored: dict[int, tuple[FittedModel, Score]] = {}
 
     def take_laws(self, laws: dict[str, type[AbstractEffect]]) -> None:
         """Propose these laws and no others, by canonical name; the default is `laws_for` a link that turns or slides."""
@@ -127,13 +127,18 @@ class ModelBuilder:
         """Take the noise of the measured channel to be ``factor`` times what it was taken for."""
         self.noise_factor *= factor
         self.windows = self.windows.noisier(factor)
+        self._scored.clear()
         self.layout = replace(self.layout, noise=tuple(factor * n for n in self.layout.noise))
 
     def scored(self, model: FittedModel) -> Score:
         """What a model misses its record by, as every command tells it."""
+        if (known := self._scored.get(id(model))) is not None and known[0] is model:
+            return known[1]
         problem, _ = self.problem(self.effects(model), model.system)
         begin = begin_anew(problem, np.zeros(problem.directions.shape[1]))
-        return score(problem, begin, self.layout, group=self.group)[0][0]
+        found = score(problem, begin, self.layout, group=self.group)[0][0]
+        self._scored[id(model)] = model, found
+        return found
 
     def too_loud(self, model: FittedModel) -> float:
         """By which factor the noise is to be taken beside a model, 1 where that leaves as much."""
@@ -173,13 +178,5 @@ def width(columns: int, step: int = 10) -> int:
 def _pad(problem: Problem) -> Problem:
     q = problem.directions.shape[1]
     extra = width(q) - q
-    return eqx.tree_at(
-        lambda p: (p.directions, p.lower, p.upper, p.shrink),
-        problem,
-        (
-            np.pad(problem.directions, ((0, 0), (0, extra))),
-            np.pad(problem.lower, (0, extra)),
-            np.pad(problem.upper, (0, extra)),
-            np.pad(problem.shrink, (0, extra)),
-        ),
-    )
+    more = {name: np.pad(getattr(problem, name), (0, extra)) for name in ("lower", "upper", "shrink")}
+    return replace(problem, directions=np.pad(problem.directions, ((0, 0), (0, extra))), **more)

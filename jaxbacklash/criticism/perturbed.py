@@ -10,6 +10,7 @@ from __future__ import annotations
 import equinox as eqx
 import numpy as np
 
+from ..fitting.continuation import tied
 from ..mechanics import AbstractEffect
 from ..records import Record
 from ..shooting.levenberg import Levenberg, minimise
@@ -71,7 +72,7 @@ def parabola(once: float, twice: float, share: float) -> tuple[float, float]:
 def as_it_ended(builder: ModelBuilder, model: FittedModel) -> tuple[Problem, Unknowns]:
     """The problem of a model with the ties that it was fitted with, and its unknowns where its fit had ended."""
     problem, _ = builder.problem(builder.effects(model), model.system)
-    problem = eqx.tree_at(lambda p: p.tie, problem, np.asarray(float(model.tie)))
+    problem = tied(problem, model.tie)
     return problem, Unknowns(np.zeros(problem.directions.shape[1]), model.unknowns.starts, model.unknowns.coefficients)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..fitting.chance import explains
+from ..fitting.continuation import tied
 from ..fitting.counts import few_counts
 from ..fitting.estimates import inflation, judge
 from ..fitting.fit import ABSOLUTE, prepare
@@ -176,7 +177,7 @@ class _Judge:
             covariance=covariance,
             explained=explains(scored, system),
         )
-        joined = eqx.tree_at(lambda p: p.tie, problem, np.asarray(model.tie if model.tied else 0.0))
+        joined = tied(problem, model.tie if model.tied else 0.0)
         noise = fitter.layout.noise
         return Fit(
             system, free, estimates, scored, held, records, noise, fitter.layout.input_noise, covariance, 0, 0, model.tied,

@@ -17,9 +17,8 @@ Georg, Introduction to Numerical Continuation Methods (2003).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-import equinox as eqx
 import numpy as np
 
 from ..mechanics import AbstractEffect, Instant
@@ -269,7 +268,7 @@ def log_evidence(problem: Problem, minimum: Minimum) -> float:
 
 def tied(problem: Problem, tie: float) -> Problem:
     """The same problem with ties of another weight."""
-    return eqx.tree_at(lambda p: p.tie, problem, np.asarray(float(tie)))
+    return replace(problem, tie=np.asarray(float(tie)))
 
 
 def _with_friction_width(problem: Problem, speeds: Mapping[str, float]) -> Problem:

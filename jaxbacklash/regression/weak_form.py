@@ -41,6 +41,7 @@ class WeakForm(Averaged):
         self.blind = record.kind == "transmitted"  # the link is not seen, so there is nothing to regress on
         self._columns: dict[str, tuple[np.ndarray, np.ndarray]] = {}
         self._kept: dict[str, Any] = {}
+        self._last: tuple[System, tuple[str, ...], Any] | None = None
 
     @cached_property
     def quick(self) -> WeakForm:
@@ -48,13 +49,19 @@ class WeakForm(Averaged):
         return WeakForm(self.record, quicker=self)
 
     def missing(self, system: System, free: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
-        """Missing torque under the bump (R,), and how it falls with each free parameter of the model (R, q)."""
+        """Missing torque under the bump (R,), and how it falls with each free parameter of the model (R, q).
+
+        That of the system asked for last is remembered: many laws are held against it.
+        """
+        if self._last is not None and self._last[0] is system and self._last[1] == free:
+            return self._last[2]
         torque, columns = self.along(system, free)
         left = float(system.inertia) * self.acceleration - self.average(self.motion.force + torque)
         by = self.average(columns)
         for j, name in enumerate(free):
             if name == "inertia":
                 by[j] = -self.acceleration
+        self._last = system, free, (left, by.T)
         return left, by.T
 
     def along(self, system: System, free: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
