@@ -132,9 +132,10 @@ def test_a_link_that_is_held_at_first(shared):
 
 
 def test_gravity_of_a_tilted_link(shared):
-    result, told = answered(shared, "f18_pose")
+    result, _ = answered(shared, "f18_pose")
     assert "gravity" in str(result["effects"])
-    assert result["verdict"] == "incomplete" or re.search(r"phase|cos|preload|offset|pose|tilt", told + str(result["effects"]))
+    zero = result["stages"][-1]["parameters"].get("gravity.phi0")
+    assert result["verdict"] == "incomplete" or zero or re.search(r"preload|offset", str(result["effects"]))
 
 
 def test_a_record_at_50_hz(shared):

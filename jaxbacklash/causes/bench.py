@@ -14,6 +14,8 @@ import equinox as eqx
 import numpy as np
 
 from ..errors import BadInput, NoAnswer
+from ..fitting.continuation import LOOSEST, continued
+from ..fitting.friction_homotopy import sliding_speeds
 from ..fitting.information import freedom
 from ..fitting.result import Fit
 from ..fitting.score import Score, score
@@ -110,6 +112,12 @@ class Bench:
             if found is None:
                 return None
             point = found
+        point = self._in_turn(kind, point)
+        # What a model leaves out beside a cause it need not leave out without it: windows that were let go are joined again.
+        joined = self._joined(point)
+        return point if joined is None else self._in_turn(kind, joined)
+
+    def _in_turn(self, kind: Kind, point: Point) -> Point:
         for _ in range(ROUNDS if kind.step(self.fit.records[0]) > 0.0 else 0):
             try:
                 _, moved, error = self.parabola(kind, point.size, point.problem, point.unknowns)
@@ -126,6 +134,14 @@ class Bench:
             if arrived:
                 break
         return point
+
+    def _joined(self, point: Point) -> Point | None:
+        """The point fitted by continuation; None where its windows stay as loose as they were."""
+        loose = float(point.problem.tie)
+        found = continued(point.problem, point.unknowns, first=max(loose, LOOSEST), speeds=sliding_speeds(point.problem))
+        if found.tie <= loose:
+            return None
+        return self._point(point.size, found.problem, found.minimum.value, point.layout, found.minimum, point.stderr)
 
     def score(self, point: Point) -> tuple[Score, ...]:
         """The scores of a point on its own data."""
