@@ -1,13 +1,14 @@
 """Which effects are found on records whose hidden ones are known: exact sets, false additions, intervals, by kind of record.
 
-    python -m benchmarks.effect_recovery [--set laboratory] [--noise 1 10 30] [--duration 20] [--tiny] [--out FILE.json]
+    python -m benchmarks.effect_recovery [--set laboratory|rigs|outside] [--noise 1 10 30] [--duration 20] [--tiny] [--out FILE]
 
 Every record has its own random rig, excitation (chirp, multisine, stepped or modulated sine), strengths, and on every
 third an encoder with counts of three noises; the simulation is non-smooth and shares nothing with the package. Each
 effect hides alone, and some in pairs and triples; some records hide nothing, some an effect outside the catalogue. A
 set counts as identifiable when every effect in it is more than 6 of the standard errors strong that a fit of the true model
 has, begun at the truth. A second record of the same joint under another excitation is only predicted. The set ``rigs`` holds
-the laws that real rigs add, alone, in pairs and beside others. It needs numba.
+the laws that real rigs add, alone, in pairs and beside others, the set ``outside`` what no law of the catalogue describes. It
+needs numba.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ from jaxbacklash.program import start
 from jaxbacklash.records import Record
 from jaxbacklash.shooting.windows import observed_noise
 from tests.independent.generator import make_effects, make_excitation, make_rig, measure, simulate_truth
-from tests.independent.rigs import OUTSIDE_CATALOGUE, Rig
+from tests.independent.rigs import OUTSIDE_CATALOGUE, OUTSIDE_STRENGTHS, Rig
 
 RATE, SIGMA = 500.0, 3e-5  # Hz, rad
 SURE = 6.0
@@ -75,12 +76,13 @@ RIG_SETS: tuple[tuple[str, ...], ...] = (
     ("sensor_filter", "damping_drift"), ("clock_drift", "disturbance"), ("contact_damping:pushes", "transmission_error"),
     ("gravity:off", "load_friction"), ("hunt_crossley:pushes", "clock_drift"),
 )  # fmt: skip
-SETS_OF = {"laboratory": SETS, "rigs": RIG_SETS}
-BEGIN = {"laboratory": 7000, "rigs": 9000}
+OUTSIDE_SETS = tuple((name,) for name in OUTSIDE_STRENGTHS) * 4
+SETS_OF = {"laboratory": SETS, "rigs": RIG_SETS, "outside": OUTSIDE_SETS}
+BEGIN = {"laboratory": 7000, "rigs": 9000, "outside": 11000}
 """Where the random numbers of a set of records begin."""
 TODAY = {"unknown_disturbance": ("disturbance", {"w": "omega"})}
 """What records were made to hide outside the catalogue that is in it today: its name, and those of its parameters."""
-OUTSIDE = tuple(name for name in OUTSIDE_CATALOGUE if name not in TODAY)
+OUTSIDE = tuple(OUTSIDE_STRENGTHS)
 PHASE = {"torque_ripple": "phi", "disturbance": "phi", "transmission_error": "psi", "gravity": "phi0"}
 """The phase of a law that repeats."""
 HYSTERESIS = {"lugre": "dahl", "bouc_wen": "dahl"}

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.effect_recovery import EXCITATIONS, OUTSIDE, RIG_SINGLES, SINGLES, Case, judge, named_today, table
+from benchmarks.effect_recovery import EXCITATIONS, RIG_SINGLES, SINGLES, TODAY, Case, judge, named_today, table
 from jaxbacklash.criticism.refine import refine
 from jaxbacklash.program import start
 from jaxbacklash.records import Record
@@ -46,7 +46,7 @@ def hidden_set(rng, count: int | None, alone: int, of: str = "laboratory") -> tu
     No two that are one by definition: a preload beside a spring in the gap only moves the place where that spring rests.
     """
     if count is None:
-        return (str(rng.choice(OUTSIDE_CATALOGUE if of == "laboratory" else OUTSIDE)),)
+        return (str(rng.choice([n for n in OUTSIDE_CATALOGUE if of == "laboratory" or n not in TODAY])),)
     drawn, wanted = DRAWN[of]
     if count == 1:
         return (wanted[alone % len(wanted)],)

@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 from tests.independent import events
 from tests.independent.generator import force_record, make_effects, make_excitation, make_rig, measure, simulate_truth
 from tests.independent.motions import Chirp, ModulatedSine, Multisine, Rest, SteppedSine
-from tests.independent.rigs import STRENGTHS, Excitation, Rig
+from tests.independent.rigs import OUTSIDE_STRENGTHS, STRENGTHS, Excitation, Rig
 
 J, B, K, C = 3.16, 0.0262, 13000.0, 12.0
 STEADY = SteppedSine(2.5, (0.04,))
@@ -119,6 +119,8 @@ def test_the_generator_agrees_on_gravity_and_on_case_1():
     np.testing.assert_allclose(truth["y"], events.simulate(events.case1(), truth["t"])[0], atol=1e-8)
 
 
+JUMPING = ("coulomb_joint", "stribeck", "coulomb_ground", "play_step")
+"""Where one of the two steps over a jump that it does not look for."""
 WIDTH = 2e-6  # rad/s, of the tanh that stands for the sign in the plain laws; the creep it allows bounds the agreement
 
 
@@ -148,6 +150,12 @@ def plain_law(name, q, t, z, w, y, v, delta, s):
         ),
         "unknown_disturbance": lambda: q["A"] * np.sin(q["w"] * t + q["phi"]),
         "speed_stiffness": lambda: -q["s"] * abs(w) * delta,
+        "pulsing_stiffness": lambda: -K * q["a"] * np.sin(q["w"] * t) * delta,
+        "end_stop": lambda: -q["K"] * max(y - q["y1"], 0.0),
+        "detent": lambda: -q["A"] * (y / q["width"]) * np.exp(0.5 - (y / q["width"]) ** 2 / 2),
+        "rumble": lambda: q["A"] * sum(np.sin(2 * np.pi * f * t + n**2) for n, f in enumerate((3.1, 4.7, 7.3, 11.2, 16.9))),
+        "one_way_damping": lambda: -q["c1"] * max(w, 0.0),
+        "squeeze_film": lambda: -q["c1"] * w * np.exp(-max(B / 2 - abs(z), 0.0) / q["h"]),
     }
     found = laws[name]() if name in laws else 0.0
     return found if isinstance(found, tuple) else (found, 0.0)
@@ -162,7 +170,7 @@ def plain_simulation(name, q, excitation, t_out):
         y, v, s, y2, v2 = u
         x, dx, _ = excitation.base.derivatives(t)
         z, w = y - x, v - dx
-        play = B * (1 + (q["r"] * t if name == "gap_drift" else 0.0))
+        play = B * (1 + (q["r"] * t if name == "gap_drift" else 0.0)) * (1 + (q["a"] * (t > 0.6) if name == "play_step" else 0.0))
         k = K * (1 + (q["r"] * t if name == "stiffness_drift" else 0.0))
         delta = dead_zone(z - (q["z0"] if name == "asymmetric_gap" else 0.0), play)
         torque, ds = plain_law(name, q, t, z, w, y, v, delta, s)
@@ -174,16 +182,18 @@ def plain_simulation(name, q, excitation, t_out):
 
 
 @needs_numba
-@pytest.mark.parametrize("name", [name for name in STRENGTHS if not name.startswith("sensor")])
+@pytest.mark.parametrize("name", [name for name in STRENGTHS | OUTSIDE_STRENGTHS if not name.startswith("sensor")])
 def test_every_law_of_the_generator_is_the_one_in_the_table(name):
     rng = np.random.default_rng(3)
     excitation, effects = make_excitation(rng, "multisine"), make_effects(rng, name)
+    if name == "play_step":
+        effects[name]["t1"] = 0.6  # within the look
     truth = simulate_truth(Rig(J, B, K, C), effects, excitation, 250.0, 1.2)
     plain = plain_simulation(name, effects[name], excitation, truth["t"])
     error = np.max(np.abs(plain - truth["z"]))
     without = simulate_truth(Rig(J, B, K, C), {}, excitation, 250.0, 1.2)
     assert np.max(np.abs(without["z"] - truth["z"])) > 3e-4
-    assert error < (2e-5 if name in ("coulomb_joint", "stribeck", "coulomb_ground") else 1e-7)
+    assert error < (2e-5 if name in JUMPING else 1e-7)
 
 
 @needs_numba

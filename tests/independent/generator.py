@@ -56,6 +56,13 @@ _COLUMNS = {
     "disturbance": {"A": kernel.DIST, "omega": kernel.DIST_W, "phi": kernel.DIST_PHI},
     "unknown_disturbance": {"A": kernel.DIST, "w": kernel.DIST_W, "phi": kernel.DIST_PHI},
     "speed_stiffness": {"s": kernel.SPEED_K},
+    "pulsing_stiffness": {"a": kernel.PULSE, "w": kernel.PULSE_W},
+    "end_stop": {"K": kernel.STOP_K, "y1": kernel.STOP_AT},
+    "detent": {"A": kernel.DETENT, "width": kernel.DETENT_W},
+    "rumble": {"A": kernel.RUMBLE},
+    "play_step": {"a": kernel.STEP, "t1": kernel.STEP_T},
+    "one_way_damping": {"c1": kernel.ONE_WAY},
+    "squeeze_film": {"c1": kernel.FILM, "h": kernel.FILM_H},
 }  # fmt: skip
 _SENSORS = {
     "sensor_delay": {"tau"}, "sensor_gain": {"g"}, "sensor_offset": {"z_s"}, "sensor_filter": {"tau_f"}, "clock_drift": {"r"},

@@ -37,9 +37,12 @@ except ImportError:  # the fast generator is for development only
     J, B, K, C, G, T0, K1, K1_REST, Z0, ASYM, K3, CC, CHI, TC, S_TC, S_TS, S_VS, TG, DRAG, RIPPLE, RIPPLE_N, RIPPLE_PHI,
     D_SIGMA, D_FC, L_S0, L_S1, L_S2, L_FC, L_FS, L_VS, W_SIGMA, W_FC, W_N, W_BETA, J2, K2, C2, GAP_RATE, K_RATE,
     DIST, DIST_W, DIST_PHI, SPEED_K, PHI0, ERROR, ERROR_M, ERROR_PSI, MU, KR, TAU_R, POWER, POWER_D0, C_RATE, DRY_RATE,
-    CC_PULLS, CHI_PULLS, FILTER, SIZE,
-) = range(58)  # fmt: skip
+    CC_PULLS, CHI_PULLS, FILTER, PULSE, PULSE_W, STOP_K, STOP_AT, DETENT, DETENT_W, RUMBLE, STEP, STEP_T, ONE_WAY, FILM, FILM_H,
+    SIZE,
+) = range(70)  # fmt: skip
 STATES = 9
+RUMBLING = 2.0 * np.pi * np.array([3.1, 4.7, 7.3, 11.2, 16.9])
+"""Angular frequencies of a rumble [rad/s], of which none is a multiple of another."""
 _EVENTS_PER_STEP = 60
 
 
@@ -62,6 +65,31 @@ def _middle(x, p):
 
 
 @njit(cache=True)
+def _half(t, p):
+    """Half the play [rad] at t [s]: it wears, or it has grown all at once."""
+    return p[B] / 2 * (1 + p[GAP_RATE] * t) * (1 + p[STEP] if t > p[STEP_T] else 1.0)
+
+
+@njit(cache=True)
+def _outside(t, y, v, z, w, x, contact, p):
+    """Torque [N m] of what no law of the catalogue describes, but for what stiffens a contact."""
+    total = 0.0
+    if p[STOP_K] != 0.0 and y > p[STOP_AT]:
+        total -= p[STOP_K] * (y - p[STOP_AT])
+    if p[DETENT] != 0.0:
+        total -= p[DETENT] * y / p[DETENT_W] * np.exp(0.5 - 0.5 * (y / p[DETENT_W]) ** 2)
+    if p[RUMBLE] != 0.0:
+        for i in range(RUMBLING.size):
+            total += p[RUMBLE] * np.sin(RUMBLING[i] * t + i * i)
+    if p[ONE_WAY] != 0.0 and w > 0.0:
+        total -= p[ONE_WAY] * w
+    if p[FILM] != 0.0:
+        away = 0.0 if contact != 0 else _half(t, p) - np.abs(z - _middle(x, p))
+        total -= p[FILM] * w * np.exp(-away / p[FILM_H])
+    return total
+
+
+@njit(cache=True)
 def _dry(t, p):
     """Dry friction at t [s] over what it is at 0."""
     return max(1 + p[DRY_RATE] * t, 0.0)
@@ -74,7 +102,7 @@ def _slip_friction(t, z, w, x, contact, p):
     if p[S_TS] != 0.0 or p[S_TC] != 0.0:
         size += p[S_TC] + (p[S_TS] - p[S_TC]) * np.exp(-((w / p[S_VS]) ** 2))
     if p[MU] != 0.0 and contact != 0:
-        depth = z - _middle(x, p) - contact * p[B] / 2 * (1 + p[GAP_RATE] * t)
+        depth = z - _middle(x, p) - contact * _half(t, p)
         size += p[MU] * np.abs(p[K] * (1 + p[K_RATE] * t) * depth)
     return size * _dry(t, p)
 
@@ -88,9 +116,11 @@ def _torque(t, s, p, modes, x, dx, force, rate):
     speed = joint * w  # |z'| on this branch
     total = force - p[C] * (1 + p[C_RATE] * t) * w + p[T0] - p[K1] * (z - p[K1_REST]) - p[DRAG] * ground * v * v
     if contact != 0:
-        depth = z - _middle(x, p) - contact * p[B] / 2 * (1 + p[GAP_RATE] * t)
+        depth = z - _middle(x, p) - contact * _half(t, p)
         spring = p[K] * (1 + p[K_RATE] * t) * depth
         stiffness = p[K] * (1 + p[K_RATE] * t) * (1 + contact * p[ASYM]) + p[SPEED_K] * speed
+        if p[PULSE] != 0.0:
+            stiffness += p[K] * p[PULSE] * np.sin(p[PULSE_W] * t)
         if p[CC_PULLS] != 0.0 and p[CHI_PULLS] != 0.0:
             damper = (p[CC] + p[CHI] * contact * depth) * w
         else:  # spring and damper push the link out of the contact, or nothing does
@@ -103,6 +133,7 @@ def _torque(t, s, p, modes, x, dx, force, rate):
         total -= stiffness * depth + p[K3] * depth**3 + damper
         if p[POWER] != 1.0:
             total -= spring * ((np.abs(depth) / p[POWER_D0]) ** (p[POWER] - 1) - 1)
+    total += _outside(t, y, v, z, w, x, contact, p)
     if p[G] != 0.0:
         total += p[G] * np.sin(y + p[PHI0])
     if p[RIPPLE] != 0.0:
@@ -172,7 +203,7 @@ def _left(t, s, p, modes, base, push, grid, scratch, out):
     x, dx, ddx = _path(t, base, grid)
     force = _path(t, push, grid)[0]
     e, w = s[0] - x - _middle(x, p), s[1] - dx
-    half = p[B] / 2 * (1 + p[GAP_RATE] * t)
+    half = _half(t, p)
     out[0] = np.abs(e) > half if modes[0] == 0 else modes[0] * e < half
     out[1] = modes[1] * w < 0
     out[2] = modes[2] * s[1] < 0

@@ -56,6 +56,19 @@ RIG_STRENGTHS = {
     "hunt_crossley:pushes": {"chi": (800.0, 3000.0), "pulls": (0.0, 0.0)},
 }
 """The same of laws that real rigs add; what stands behind a colon is the form of the law before it."""
+OUTSIDE_STRENGTHS = {
+    "speed_stiffness": {"s": (2000.0, 5000.0)},
+    "pulsing_stiffness": {"a": (0.1, 0.3), "w": (30.0, 90.0)},
+    "end_stop": {"K": (300.0, 1000.0), "y1": (0.0, 0.02)},
+    "detent": {"A": (5.0, 15.0), "width": (0.01, 0.03)},
+    "rumble": {"A": (1.5, 4.0)},
+    "play_step": {"a": (0.05, 0.2), "t1": (6.0, 14.0)},
+    "one_way_damping": {"c1": (4.0, 12.0)},
+    "squeeze_film": {"c1": (10.0, 30.0), "h": (0.001, 0.003)},
+}
+"""The same of what no law of the catalogue describes: a contact that stiffens with the speed or is pulsed, a stop that one side
+of the swing meets, a detent, a hum of five tones, a play that grows all at once, a damper that acts one way, a film of oil that
+is squeezed where the play ends."""
 _DRIFTS = ("gap_drift", "stiffness_drift")
 SIGNED = (
     "gravity", "preload", "asymmetric_gap", "asymmetric_stiffness", "sensor_offset", *_DRIFTS,
@@ -127,11 +140,11 @@ def _lines(rng, rms, low, high, corner) -> Multisine:
 
 
 def make_effects(rng, *names: str) -> dict[str, dict[str, float]]:
-    """The named effects with random strengths, ready for `simulate_truth`: of `STRENGTHS` or, in a form, `RIG_STRENGTHS`."""
+    """The named effects with random strengths, ready for `simulate_truth`."""
+    strengths = OUTSIDE_STRENGTHS | RIG_STRENGTHS | STRENGTHS
     effects = {}
     for name in names:
-        drawn = STRENGTHS[name] if name in STRENGTHS else RIG_STRENGTHS[name]
-        draw = {key: float(rng.uniform(*bounds)) for key, bounds in drawn.items()}
+        draw = {key: float(rng.uniform(*bounds)) for key, bounds in strengths[name].items()}
         if name in SIGNED:
             first = next(iter(draw))
             draw[first] *= rng.choice((-1.0, 1.0))
