@@ -18,66 +18,55 @@ import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import jaxbacklash
 from benchmarks import effect_recovery, effect_strangers
 from jaxbacklash.criticism.refine import refine
+from jaxbacklash.fitting import settings
 from jaxbacklash.program import start
 
 SEED = 61
 
 
-@dataclass(frozen=True)
-class Number:
-    """A number of the search: the ``module`` that states it, its ``name``, and the value ``off`` at which its rule does nothing,
-    None where there is no such value."""
-
-    module: str
-    name: str
-    off: float | None = None
-
-    def settings(self) -> list[tuple[str, float]]:
-        """Other values to try, by what they are called."""
-        value = getattr(importlib.import_module(f"jaxbacklash.{self.module}"), self.name)
-        kind = type(value)
-        found = [("halved", kind(value / 2)), ("doubled", kind(value * 2))]
-        return found if self.off is None else [*found, ("off", self.off)]
+OFF = {
+    "MOST_LAWS": 99, "MOST_FITTED": 99, "MOST_STEPS": 10**6, "CLEAR_SHARE": 0.0, "PROMISING": 0.0, "CLOSE": 0.0, "SCATTER": 0.0,
+    "MEASURING": 0.0, "SEEN": 0.0, "LOOSE": 1e3, "FALLEN": 1e9, "WITHIN_CHANCE": 0.0, "SOFT": 1e-9, "STABLE": 1e9,
+}  # fmt: skip
+"""Values at which a rule does nothing, of the numbers that have one."""
 
 
-NUMBERS = (
-    Number("criticism.evidence_search", "MOST_LAWS", 99), Number("criticism.evidence_search", "MOST_FITTED", 99),
-    Number("criticism.evidence_search", "CLEAR_SHARE", 0.0), Number("criticism.evidence_search", "PROMISING", 0.0),
-    Number("criticism.evidence_search", "SCATTER", 0.0), Number("criticism.evidence_search", "CLOSE", 0.0),
-    Number("criticism.evidence", "SIGMAS"), Number("criticism.evidence", "CHANCE"),
-    Number("criticism.model_fitter", "LOOSE", 1e3), Number("criticism.model_fitter", "MOST_STEPS", 10**6),
-    Number("criticism.model_fitter", "MEASURING", 0.0), Number("criticism.screening", "SEEN", 0.0),
-    Number("criticism.force_test", "SHARE"), Number("criticism.unnamed", "BY_CHANCE"), Number("criticism.unnamed", "ALIKE"),
-    Number("fitting.continuation", "LOOSEST"), Number("fitting.continuation", "FINER"),
-    Number("fitting.continuation", "FALLEN", 1e9), Number("fitting.continuation", "WITHIN_CHANCE", 0.0),
-    Number("fitting.continuation", "SOFT", 1e-9), Number("fitting.continuation", "SHARP"),
-    Number("fitting.continuation", "STABLE", 1e9), Number("fitting.continuation", "BETWEEN"),
-    Number("fitting.continuation", "LAST"), Number("fitting.continuation", "ROUGHLY"), Number("fitting.continuation", "CLOSELY"),
-)  # fmt: skip
-"""Numbers that compiled programs hold (steps of the least-squares search, lengths of windows) are not among them: each value
-would compile all programs anew. `benchmarks.least_squares` and `benchmarks.fit_speed` measure those."""
+def numbers() -> list[str]:
+    """Every number of `jaxbacklash.fitting.settings`.
+
+    Numbers that compiled programs hold (steps of the least-squares search, lengths of windows) are not among them: each value
+    would compile all programs anew. `benchmarks.least_squares` and `benchmarks.fit_speed` measure those.
+    """
+    return [name for name in vars(settings) if name.isupper()]
+
+
+def other_values(name: str) -> list[tuple[str, float]]:
+    """Other values of a number to try, by what they are called."""
+    value = getattr(settings, name)
+    kind = type(value)
+    found = [("halved", kind(value / 2)), ("doubled", kind(value * 2))]
+    return [*found, ("off", OFF[name])] if name in OFF else found
 
 
 @contextmanager
-def changed(number: Number, value: float) -> Iterator[None]:
+def changed(name: str, value: float) -> Iterator[None]:
     """The number has another value in every module that knows it, for as long as this lasts."""
-    stated = getattr(importlib.import_module(f"jaxbacklash.{number.module}"), number.name)
+    stated = getattr(settings, name)
     names = [f"jaxbacklash.{m.name}" for p in ("criticism", "fitting") for m in pkgutil.iter_modules(_path(p), f"{p}.")]
-    holders = [m for m in map(importlib.import_module, names) if getattr(m, number.name, None) is stated]
+    holders = [m for m in map(importlib.import_module, names) if getattr(m, name, None) is stated]
     for module in holders:
-        setattr(module, number.name, value)
+        setattr(module, name, value)
     try:
         yield
     finally:
         for module in holders:
-            setattr(module, number.name, stated)
+            setattr(module, name, stated)
 
 
 def _path(package: str) -> list[str]:
@@ -133,20 +122,20 @@ def main() -> None:
     parser.add_argument("--tiny", action="store_true", help="one number on one record")
     options = parser.parse_args()
     start()
-    asked = [n for n in NUMBERS if options.only is None or n.name in options.only]
+    asked = [n for n in numbers() if options.only is None or n in options.only]
     with tempfile.TemporaryDirectory() as folder:
         work = options.work or Path(folder)
         work.mkdir(parents=True, exist_ok=True)
         some = list(cases(options.records, options.noise))
         if options.tiny:
-            asked, some = [n for n in asked if n.name == "CLOSE"], some[:1]
+            asked, some = ["CLOSE"], some[:1]
         as_it_is = answers(work, "as it is", some)
         print(f"{len(some)} records, {sum(r['right'] for r in as_it_is.values())} right with all numbers as they are")
         print("| number | otherwise named | became right | became wrong | time | which |\n|---|---|---|---|---|---|", flush=True)
-        for number in asked:
-            for called, value in number.settings()[-1:] if options.tiny else number.settings():
-                setting = f"{number.name} {called} ({value:g})"
-                with changed(number, value):
+        for name in asked:
+            for called, value in other_values(name)[-1:] if options.tiny else other_values(name):
+                setting = f"{name} {called} ({value:g})"
+                with changed(name, value):
                     print(compared(setting, as_it_is, answers(work, setting, some)), flush=True)
 
 

@@ -78,7 +78,7 @@ def param(*, default: float | None = None, required: bool = False, **spec: Any) 
 
 
 @functools.cache
-def _fields(cls: type[Any]) -> tuple[tuple[str, Spec | None, bool], ...]:
+def _fields(cls: Any) -> tuple[tuple[str, Spec | None, bool], ...]:
     """Name, description and whether it lends no name to what it holds, of each field of a class that may hold parameters."""
     return tuple(
         (field.name, field.metadata.get("spec"), field.metadata.get("bare", False))
@@ -93,7 +93,7 @@ def _walk(node: Any, prefix: str) -> list[tuple[str, Spec]]:
     if isinstance(node, dict):  # pytrees sort the keys of a dict, so names must follow
         return [pair for key in sorted(node) for pair in _walk(node[key], f"{prefix}{key}.")]
     found: list[tuple[str, Spec]] = []
-    for name, spec, bare in _fields(type(node)):
+    for name, spec, bare in _fields(node.__class__):
         if spec is not None:
             found.append((prefix + name, spec))
         else:

@@ -71,7 +71,7 @@ def test_a_motion_beyond_the_fitted_edges_is_not_said_to_stay_inside_them(play, 
         assert (found[name].value, found[name].verdict) == (None, "not determined")
         assert ("never leaves the play" in found[name].why) == (not leaves)
         assert (f"z leaves the fitted play of {play:.3g} rad (|z| up to 0.02" in found[name].why) == leaves
-        assert ("5 standard errors" in found[name].why) == leaves
+        assert ("4 standard errors" in found[name].why) == leaves
     assert "over which z ranges" in found["backlash"].why
 
 

@@ -5,11 +5,11 @@ import pytest
 from scipy.interpolate import BSpline
 
 from jaxbacklash.criticism.model_fitter import ModelFitter
-from jaxbacklash.fitting.information import inverse_information
 from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import with_values
 from jaxbacklash.records import Record
+from jaxbacklash.shooting.information import inverse_information
 from jaxbacklash.shooting.levenberg import Levenberg, minimise
 from jaxbacklash.shooting.windows import LEAST_INTERVALS, cut
 from jaxbacklash.signals import DEGREE, choose_intervals, fit_spline, knots

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from jaxbacklash.effects import BoucWen, Dahl, FlexibleLink, Lugre
-from jaxbacklash.fitting.information import freedom
 from jaxbacklash.fitting.setup import first_guess, make_problem
 from jaxbacklash.mechanics import canonical_name
 from jaxbacklash.parameters import values
+from jaxbacklash.shooting.information import freedom
 from jaxbacklash.shooting.levenberg import Levenberg, minimise
 from jaxbacklash.shooting.multiple_shooting import KEPT, _first_remembered, tie_weights
 from jaxbacklash.shooting.windows import cut

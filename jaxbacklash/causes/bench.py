@@ -14,14 +14,15 @@ import equinox as eqx
 import numpy as np
 
 from ..errors import BadInput, NoAnswer
-from ..fitting.continuation import LOOSEST, continued
+from ..fitting.continuation import continued
 from ..fitting.friction_homotopy import sliding_speeds
-from ..fitting.information import freedom
 from ..fitting.result import Fit
 from ..fitting.score import Score, score
 from ..fitting.search import search
+from ..fitting.settings import LOOSEST
 from ..parameters import values, with_values
 from ..records import Record
+from ..shooting.information import freedom
 from ..shooting.levenberg import Levenberg, Minimum, minimise
 from ..shooting.problem import Problem, Unknowns
 from ..shooting.windows import Layout, Windows, cut

@@ -11,12 +11,12 @@ from ..errors import BadInput
 from ..fitting.chance import beyond_chance, misses
 from ..fitting.estimates import judge
 from ..fitting.fit import ABSOLUTE
-from ..fitting.information import inverse_information
 from ..fitting.result import Fit
 from ..fitting.search import silent
 from ..parameters import values, with_values
 from ..records import Record
 from ..regression.equation_error import Start
+from ..shooting.information import inverse_information
 from ..system import System
 from .bench import Bench, Point
 from .cause import Cause

@@ -5,14 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..fitting import left_out
-from ..fitting.left_out import CHANCE, SIGMAS
+from ..fitting.settings import LIKELY, SURE
 from ..mechanics import AbstractEffect
 from ..parameters import Spec, specs, values
 from .fitted_model import FittedModel
 from .model_builder import ModelBuilder, strengths
-
-SURE = 4.0
-"""A gain of so many times what is demanded is no accident."""
 
 
 def demanded(fitter: ModelBuilder) -> float:
@@ -33,12 +30,12 @@ def noise_too_large(model: FittedModel) -> bool:
 
 def most_of_noise(model: FittedModel, sigmas: float | None = None) -> float:
     """The largest misfit of a model that noise may leave, see `jaxbacklash.fitting.left_out.most_of_noise`."""
-    return left_out.most_of_noise(model.freedom, SIGMAS if sigmas is None else sigmas)
+    return left_out.most_of_noise(model.freedom, SURE if sigmas is None else sigmas)
 
 
 def leaves_a_rest(model: FittedModel) -> bool:
     """Whether a model leaves clearly more than noise."""
-    return model.misfit > most_of_noise(model, CHANCE)
+    return model.misfit > most_of_noise(model, LIKELY)
 
 
 def leaves_noise(model: FittedModel) -> bool:

@@ -12,8 +12,8 @@ import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from ..fitting.continuation import SHARP, TIGHTEST
 from ..fitting.search import silent
+from ..fitting.settings import CLEAR_SHARE, CLOSE, MOST_FITTED, MOST_LAWS, PROMISING, SCATTER, SHARP, TIGHTEST
 from .candidates import Candidate, share_of_rest
 from .evidence import demanded, leaves_noise, noise_too_large
 from .fitted_model import FittedModel
@@ -21,21 +21,6 @@ from .model_fitter import ExhaustedError, ModelFitter
 from .moves import Neighbour, in_other_forms, with_law, with_simpler_law, without_law
 from .screening import net_gain, screen
 from .steps import SearchStep
-
-MOST_LAWS = 4
-"""Laws in a model at most: more small ones stand for one that the catalogue does not have."""
-MOST_FITTED = 3
-"""Candidates beside one model that are fitted at most."""
-CLEAR_SHARE = 0.1
-"""Share of what a model leaves, in units of the criterion, that a law must take away if more is left."""
-PROMISING = 0.25
-"""Share of the most promising candidate's predicted gain that earns a fit."""
-
-
-SCATTER = 60.0
-"""Evidence up to which two models with dry friction are begun once more before they are compared."""
-CLOSE = 0.8
-"""Share of a candidate's predicted gain that leaves nothing which another one must promise to be fitted too."""
 
 
 class EvidenceSearch:

@@ -16,6 +16,7 @@ import numpy as np
 from ..errors import BadInput
 from ..excitation import SteppedSine
 from ..fitting.score import score
+from ..fitting.settings import PARTED, SECONDS
 from ..fitting.setup import first_guess
 from ..mechanics import told_apart
 from ..records import Record
@@ -23,11 +24,6 @@ from ..simulation import measured_base, simulate
 from ..system import System
 from .fitted_model import FittedModel
 from .model_builder import ModelBuilder
-
-SECONDS = 4.0
-"""Length of the experiment [s], of which its sine grows over the first tenth."""
-PARTED = 40.0
-"""Twice the logarithm of the likelihood ratio that the experiment must promise: four times what an effect is accepted for."""
 
 
 @dataclass(frozen=True)

@@ -13,16 +13,14 @@ from functools import partial
 import equinox as eqx
 import numpy as np
 
-from ..fitting.continuation import SHARP, tied
+from ..fitting.continuation import tied
+from ..fitting.settings import PUSH, SHARP
 from ..mechanics import AbstractEffect
 from ..regression.along_motion import motion, own_states, own_torques
 from ..shooting.problem import Unknowns
 from .fitted_model import FittedModel
 from .model_fitter import ModelFitter
 from .perturbed import answered, model_record, panel_edges, parabola
-
-SHARE = 0.3
-"""Share of a law's torque at its guess that is put on the link first."""
 
 
 class ForceTest:
@@ -68,10 +66,10 @@ class ForceTest:
         return self._lowest(partial(self._answer, torque))
 
     def _lowest(self, rise: Callable[[float], float]) -> tuple[float, float]:
-        once = rise(SHARE)
+        once = rise(PUSH)
         if not once < 0.0:
             return 0.0, 1.0  # less than half of that share is best, if any
-        slope, curvature = parabola(once, rise(2.0 * SHARE), SHARE)
+        slope, curvature = parabola(once, rise(2.0 * PUSH), PUSH)
         if not (np.isfinite(curvature) and curvature > 0.0 and slope < 0.0):
             return 0.0, 1.0
         return slope**2 / curvature, -slope / curvature

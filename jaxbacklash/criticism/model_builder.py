@@ -178,5 +178,6 @@ def width(columns: int, step: int = 10) -> int:
 def _pad(problem: Problem) -> Problem:
     q = problem.directions.shape[1]
     extra = width(q) - q
-    more = {name: np.pad(getattr(problem, name), (0, extra)) for name in ("lower", "upper", "shrink")}
-    return replace(problem, directions=np.pad(problem.directions, ((0, 0), (0, extra))), **more)
+    lower, upper, shrink = (np.pad(column, (0, extra)) for column in (problem.lower, problem.upper, problem.shrink))
+    directions = np.pad(problem.directions, ((0, 0), (0, extra)))
+    return replace(problem, directions=directions, lower=lower, upper=upper, shrink=shrink)

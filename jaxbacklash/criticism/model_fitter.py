@@ -9,27 +9,20 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..fitting.continuation import LOOSEST, TIGHTEST, Continued, continued, in_one_run, sharpened
-from ..fitting.information import freedom
+from ..fitting.continuation import Continued, continued, in_one_run, sharpened
 from ..fitting.left_out import excess
+from ..fitting.settings import LOOSE, LOOSEST, MEASURING, MOST_STEPS, TIGHTEST
 from ..fitting.setup import first_guess, read_through
 from ..fitting.stick_slip import sticks_and_slips
 from ..mechanics import AbstractEffect
 from ..parameters import values, with_values
 from ..records import Record
+from ..shooting.information import freedom
 from ..shooting.problem import Unknowns
 from ..system import System
 from .evidence import correlation_length, leaves_noise, measures_only
 from .fitted_model import FittedModel
 from .model_builder import ModelBuilder
-
-LOOSE = 1e-2
-"""Weight of the ties with which a model is begun at most, whatever its neighbour ended with: it may lack what that one has."""
-
-MOST_STEPS = 1000
-"""Steps of a search over all its fits: then it ends with the best it has. Counted and not timed, so that every run ends alike."""
-MEASURING = 2.0
-"""Minus twice the log prior odds of a fault of the measuring chain against a law of the joint."""
 
 
 class ExhaustedError(Exception):

@@ -16,7 +16,6 @@ from ..fitting.continuation import tied
 from ..fitting.counts import few_counts
 from ..fitting.estimates import inflation, judge
 from ..fitting.fit import ABSOLUTE, prepare
-from ..fitting.information import inverse_information
 from ..fitting.left_over import predict, why_open
 from ..fitting.result import Fit
 from ..fitting.score import Score
@@ -28,6 +27,7 @@ from ..records.force import tell_way
 from ..records.relative_motion import check_answers
 from ..records.size import check_size
 from ..regression.equation_error import Start
+from ..shooting.information import inverse_information
 from ..shooting.problem import Problem, Unknowns
 from ..system import System
 from .evidence_search import EvidenceSearch
@@ -40,9 +40,6 @@ from .refinement import Refinement
 from .steps import Stage
 from .unnamed import unnamed
 from .verdict import borne_out, judge_rest, not_added
-
-SEPARATED = 2
-"""Alternatives for which an experiment is looked for."""
 
 
 def refine(
@@ -136,7 +133,7 @@ def refine(
     verdict = judge_rest(kept, [s.fit for s in stages], unnamed(fitter, kept))
     verdict = replace(verdict, text=f"{verdict.text} {against} {few_counts(last)}".strip())
     experiments = []
-    for names in others[:SEPARATED]:
+    for names in others[:2]:
         progress(f"looking for an experiment that separates {' + '.join(names)}", 0.88)
         experiments.append(separate(fitter, kept, search.level[names], translational=translational))
     clock["experiment"] = time.perf_counter()

@@ -18,6 +18,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from ..fitting.settings import SEEN
 from ..mechanics import canonical_name
 from ..parameters import free_specs, values
 from ..regression.tuning import tune
@@ -28,9 +29,6 @@ from .fitted_model import FittedModel
 from .force_test import ForceTest
 from .model_fitter import ModelFitter
 from .moves import give_way
-
-SEEN = 10.0
-"""Fall of the weak form's sum of squares, in units of its rows' variance, from which on a law that remembers is tuned."""
 
 
 def screen(fitter: ModelFitter, model: FittedModel, barred: Iterable[str] = ()) -> list[Candidate]:

@@ -13,21 +13,17 @@ from dataclasses import dataclass
 import equinox as eqx
 import numpy as np
 
+from ..fitting.settings import ALIKE, SEEN, SURE
 from ..pointwise import along
 from ..regression.along_motion import Motion
 from ..regression.spectrum import highest_line
 from ..regression.weak_form import WeakForm, whitener
 from ..shooting.levenberg import Levenberg, minimise
 from ..system import System
-from .evidence import SURE, demanded, most_of_noise
+from .evidence import demanded, most_of_noise
 from .fitted_model import FittedModel
 from .model_builder import ModelBuilder
 from .perturbed import answered, as_it_ended, blurred, delayed, model_record, panel_edges, parabola
-
-BY_CHANCE = 8.0
-"""What the weak form shows of a torque by chance where nothing is missing, at most: less is not held against the trajectory."""
-ALIKE = 0.01
-"""Share of a torque, squared, that the model cannot make up for by itself: with less it is no torque of its own."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +118,7 @@ def glimpses(builder: ModelBuilder, model: FittedModel, own: WeakForm, keep: int
     rows = sizes[:, None] * (rows - made_up.T @ own.along(model.system, model.free)[1])
     told, tried = [*words, f"a rhythm of its own of {hertz:.3g} Hz"], [*(len(words) for _ in words), rest.size]
     found = [Glimpse(*one) for one in zip(told, rows, evidence, tried)]
-    likely = [g for g in found if g.evidence > max(BY_CHANCE, g.chance)]
+    likely = [g for g in found if g.evidence > max(SEEN, g.chance)]
     return sorted(likely, key=lambda g: -g.evidence)[:keep]
 
 

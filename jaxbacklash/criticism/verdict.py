@@ -6,14 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..fitting import Fit, error_in_words
-from ..fitting.chance import NEARLY
+from ..fitting.settings import AT_NOISE, NEARLY
 from .evidence import at_a_limit, most_of_noise
 from .fitted_model import FittedModel
 from .unnamed import Unnamed
-
-AT_NOISE = 1.05
-"""Error of the median window of a held-out record, over the noise, up to which a larger error there speaks of a few windows,
-which may begin where no start can be told, and not against what was added."""
 
 
 @dataclass(frozen=True)

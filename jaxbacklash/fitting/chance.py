@@ -11,20 +11,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from .settings import BEYOND, EXPLAINED, FEW, NEARLY, NOISE_KNOWN, RARE, SURE
+
 if TYPE_CHECKING:
     from .score import Score
-
-NOISE_KNOWN = 0.03
-"""Relative error of the estimated noise level that is put down to the estimate and not to the model."""
-SIGMAS = 4.0
-"""Standard deviations by which the median window may exceed the noise: one right record in 30 000 does."""
-RARE = 1e-3
-"""Chance with which noise alone takes a window beyond the limit that is counted."""
-NEARLY = 1.1
-"""Error over the noise up to which a fit counts as near the noise, which is itself an estimate."""
-SHARE, FEW = 0.05, 3
-"""Windows beyond that limit, as a share and at least, that no chance explains; single ones are left to contacts that just graze
-an edge, where a right model parts from the record too."""
 
 
 class Scored(Protocol):
@@ -48,7 +38,7 @@ def missed(scores: Sequence[Score], system: Any) -> bool:
 
 def near_noise(scores: Sequence[Score]) -> bool:
     """Whether the median window of every score is near the noise, and all its windows together within three tenths of it."""
-    return all(s.median < NEARLY and s.rms < 1.3 for s in scores)
+    return all(s.median < NEARLY and s.rms < EXPLAINED for s in scores)
 
 
 def explains(scores: Sequence[Score], system: Any) -> bool:
@@ -70,4 +60,4 @@ def misses(score: Score, states: int) -> bool:
     spread = np.sqrt(0.5 * np.pi / (2.0 * freedom * ratio.size))
     limit = np.sqrt(chdtri(freedom, RARE) / freedom)
     beyond = int(np.sum(own > limit))
-    return bool(np.median(own) > 1.0 + SIGMAS * spread or beyond > max(FEW, SHARE * ratio.size))
+    return bool(np.median(own) > 1.0 + SURE * spread or beyond > max(FEW, BEYOND * ratio.size))

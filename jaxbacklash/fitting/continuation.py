@@ -16,6 +16,7 @@ Georg, Introduction to Numerical Continuation Methods (2003).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -23,40 +24,29 @@ import numpy as np
 
 from ..mechanics import AbstractEffect, Instant
 from ..parameters import specs, values
+from ..shooting.information import freedom
 from ..shooting.levenberg import Levenberg, Minimum, minimise
 from ..shooting.multiple_shooting import tie_weights
 from ..shooting.problem import Problem, Unknowns
 from ..system import System
 from .friction_homotopy import with_friction_widths
-from .information import freedom
+from .settings import (
+    BETWEEN,
+    CLOSELY,
+    FALLEN,
+    FINER,
+    LAST,
+    LOOSEST,
+    NARROWEST,
+    NEAR_ENOUGH,
+    ROUGHLY,
+    SHARP,
+    SOFT,
+    STABLE,
+    TIGHTEST,
+    WITHIN_CHANCE,
+)
 from .stick_slip import search_stick_slip
-
-LOOSEST, TIGHTEST = 1e-4, 100.0
-"""Weights of the ties between windows from which on to which a fit goes: the first lets a window's end miss the next one's start
-by two hundred times the noise, with the last the windows are one trajectory."""
-FINER = 10.0
-"""Factor by which the weight of the ties grows from one fit to the next."""
-FALLEN = 3.0
-"""Fall of the log evidence below its highest from which on tighter ties are not tried: a likelihood of a twentieth."""
-WITHIN_CHANCE = 1.92
-"""Half the 95 % point of chi-square with one degree of freedom: q = 0 is kept where the likeliest q gains no more."""
-SOFT, SHARP = 0.03, 0.1
-"""Range in which dry friction turns its sign where ties are as loose as `SOFT_AT`, as a share of the speed at which it slides;
-and the weight of the ties from which on it is sharp; a fit with dry friction ends there, since tighter ties make corners."""
-SOFT_AT = 1e-3
-"""Weight of the ties up to which dry friction is as soft as `SOFT`; it narrows as they grow."""
-STABLE = 1.5
-"""Product of step and rate, of the fastest decay that softened friction may make, up to which a Runge-Kutta step of fourth order
-is stable (2.8), less the slope 1.5 of the softened sign and a margin for friction that grows during the fit."""
-WAYS: tuple[tuple[float, ...], ...] = ((), (0.003, 0.001), (0.03, 0.01, 0.003, 0.001))
-"""Ranges over which softened friction turns, one after the other, as shares of the speed at which it slides: three ways."""
-NEAR_ENOUGH = 2.5
-"""How many times the noise a run along the smoothed input may miss by for the input to be let free within its noise."""
-BETWEEN, LAST = 15, 40
-"""Steps of a fit with ties looser than `SHARP`, and of one with those or tighter ones."""
-ROUGHLY, CLOSELY = 0.3, 1e-2
-"""How near to the minimum a fit on the way comes, and the last one, as `Levenberg.atol`: half the square of the standard errors
-by which a parameter may be off."""
 
 
 @dataclass(frozen=True)
@@ -156,7 +146,7 @@ def sharpened(found: Continued, speeds: Mapping[str, float]) -> Continued:
     """
     from_here = found.reached[max(found.reached)]
     stops = list(found.stops)
-    for shares in WAYS:
+    for shares in ways():
         unknowns, loose = from_here, tied(found.problem, 1.0)
         for share in shares:
             unknowns = minimise(softer(loose, speeds, share), unknowns, Levenberg(limit=LAST, atol=ROUGHLY)).value
@@ -191,6 +181,12 @@ def in_one_run(problem: Problem, theta: np.ndarray | None = None) -> Continued:
     height = log_evidence(at, minimum)
     minimum.stats["steps"] = np.asarray(steps)
     return Continued(at, minimum, height, (Stop(TIGHTEST, height, steps),), steps < LAST, {TIGHTEST: unknowns})
+
+
+def ways() -> list[list[float]]:
+    """Ranges over which softened friction turns, one after the other, as shares of the speed at which it slides: three ways."""
+    narrower = [NARROWEST * math.sqrt(FINER) ** k for k in range(4)][::-1]
+    return [[], narrower[2:], narrower]
 
 
 class _Way:
@@ -275,7 +271,7 @@ def _with_friction_width(problem: Problem, speeds: Mapping[str, float]) -> Probl
     tie = float(problem.tie)
     if not speeds or tie >= SHARP:
         return problem
-    return softer(problem, speeds, SOFT * min(SOFT_AT / tie, 1.0))
+    return softer(problem, speeds, SOFT * min(FINER * LOOSEST / tie, 1.0))
 
 
 def softer(problem: Problem, speeds: Mapping[str, float], share: float) -> Problem:

@@ -15,12 +15,7 @@ from ..records import Record
 from ..signals import count_of
 from ..system import System
 from .estimates import Estimate
-
-FEW = 10.0
-"""Counts in the play below which intervals do not hold (independent records: with four to seven, errors of three to six standard
-errors; with a hundred, none but by chance)."""
-SCATTERED = 0.4
-"""Noise, as a share of a count, that scatters what counting does: counting alone makes 0.29 of it."""
+from .settings import FEW_COUNTS, SCATTERED
 
 
 class Fitted(Protocol):
@@ -46,7 +41,7 @@ def few_counts(fit: Fitted) -> str:
     for record, noise in zip(fit.records, fit.noise):
         name = record.observed_name
         count = count_of(record.channels[name])
-        if count is None or noise > SCATTERED * count or not 0.0 < play.value < FEW * count:
+        if count is None or noise > SCATTERED * count or not 0.0 < play.value < FEW_COUNTS * count:
             continue
         unit = channel_unit(name, translational=fit.translational)
         return (

@@ -13,21 +13,20 @@ from ..parameters import specs, unit_text, values
 from ..records import Record
 from ..regression.force_loop import NOTHING
 from ..system import System
-from .hard import SHORTEST, contact_samples, most_play, reach_of_sampling
+from .hard import contact_samples, most_play, reach_of_sampling
 from .score import Score
+from .settings import CONFIDENCE, CORRELATED, MOST_UNCERTAIN, ONE_WITH, SHORTEST, SURE
 from .stick_slip import correlation
 
 FOUND, ONE_SIDED, UNDETERMINED = "found", "one-sided", "not determined"
-MOST_UNCERTAIN = 0.5
-"""Standard error, as a share of the value, above which a value is not determined."""
-CLEAR = 5.0
-"""Standard errors that a contact stiffness has to stand clear of zero."""
-ONE_WITH = 0.9995
-"""Correlation of two errors from which on only a combination of the two parameters is determined: it prints as 1.000."""
-CORRELATED = 1.25
-"""Misfit, in units of the noise, from which on what one run misses by is no noise."""
-NORMAL_95 = float(ndtri(0.975))
-BELOW_95 = float(ndtri(0.95))
+
+
+def two_sided(confidence: float) -> float:
+    """Standard deviations within which a normal number lies with a probability ``confidence``."""
+    return float(ndtri(0.5 * (1.0 + confidence)))
+
+
+NORMAL_95, BELOW_95 = two_sided(CONFIDENCE), float(ndtri(CONFIDENCE))
 BOUNDED = ("damping", "backlash")
 """Parameters that may be zero, of which an upper bound is worth telling where they are not determined."""
 
@@ -202,7 +201,7 @@ def _joint_reasons(
     touch = [contacts(r, low, high) for r in records]
     above, below = max(c.above for c in touch), max(c.below for c in touch)
     reach = max(c.reach for c in touch)
-    weak = stiffness < CLEAR * stderr.get("stiffness", 0.0) or not np.isfinite(stderr.get("stiffness", 0.0))
+    weak = stiffness < SURE * stderr.get("stiffness", 0.0) or not np.isfinite(stderr.get("stiffness", 0.0))
     if weak and all(r.kind == "transmitted" for r in records):
         # What only contact can carry was measured: where the joint met both edges, the play is judged by its own error.
         met = "" if min(above, below) > 0.0 else " on one side only"
@@ -213,7 +212,7 @@ def _joint_reasons(
         if above > 0.0 or below > 0.0:
             why = (
                 f"z leaves the fitted play of {high - low:.3g} {length} (|z| up to {reach:.4g} {length}), but the contact "
-                f"stiffness is not clear of zero by {CLEAR:g} standard errors"
+                f"stiffness is not clear of zero by {SURE:g} standard errors"
             )
         lost = max(most_play(r) for r in records)
         range_of_z = f"; the lost motion, over which z ranges, is {lost:.3g} {length}" if system.observed != "T" else ""

@@ -24,12 +24,13 @@ from ..shooting.windows import Layout, Windows, crossing_time, cut
 from ..system import System
 from .chance import explains
 from .estimates import UNDETERMINED, Estimate, inflation, judge
-from .hard import SHORTEST, SUSPECT, contact_samples, harder, most_play, travel_in_contact
-from .left_over import EXPLAINED, predict, settle_noise, why_open
+from .hard import contact_samples, harder, most_play, travel_in_contact
+from .left_over import predict, settle_noise, why_open
 from .profile import with_profiles
 from .result import Fit
 from .score import Score, begin_anew, score
 from .search import Found, search, silent
+from .settings import EXPLAINED, SHORTEST
 from .setup import base_system, check_motion, free_names, make_problem
 from .stick_slip import sticks_and_slips
 
@@ -173,7 +174,7 @@ def _harder(
     """A search that has ended short of the noise, or another from contacts of less than a sample where that ends nearer."""
     system = begun[0]
     ended = with_values(system, dict(zip(values(system), np.asarray(found.problem.parameters(found.unknowns.theta)))))
-    if contact_samples(ended, records[0].dt) > SUSPECT:
+    if contact_samples(ended, records[0].dt) > 2.0 * SHORTEST:
         return found, begun
     progress("fitting again, from a hard contact", 0.7)
     begin = harder(ended, records)

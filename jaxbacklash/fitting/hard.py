@@ -14,17 +14,7 @@ import numpy as np
 from ..parameters import values, with_values
 from ..records import Record
 from ..system import System
-
-SHORTEST = 2.0
-"""Samples in a contact, below which its stiffness is not determined."""
-SUSPECT = 4.0
-"""Samples in a contact, below which a misfit may come from a contact that is harder still."""
-HARDER = 0.5
-"""Samples in a contact with which a search begins anew."""
-LAG = 4
-"""Samples over which the usual speed is taken: noise is little of the travel in them."""
-TAIL = 0.01
-"""Share of the samples beyond either edge of the range that is the play: noise, and the ends of contacts."""
+from .settings import SHORTEST, TAIL
 
 
 def contact_samples(system: System, dt: float) -> float:
@@ -47,7 +37,7 @@ def harder(system: System, records: Sequence[Record]) -> System:
     low, high = _range(z)
     mass, found = float(system.inertia), values(system)
     damping = min(found["damping"], 0.5 * mass / dt / z.size)  # what a long flight tells, the search finds
-    stiffness = mass * (np.pi / (HARDER * dt)) ** 2
+    stiffness = mass * (4.0 * np.pi / (SHORTEST * dt)) ** 2
     return with_values(system, {"backlash": float(high - low), "stiffness": stiffness, "damping": damping})
 
 
@@ -61,7 +51,8 @@ def travel_in_contact(system: System, record: Record) -> float:
     """How far the link travels at its usual speed in the time of a contact, in the unit of z: by so much the play is open where
     the stiffness is, since a softer contact and a smaller play turn the link round at the same moments."""
     z = _relative(record)
-    return contact_samples(system, record.dt) * float(np.sqrt(np.mean((z[LAG:] - z[:-LAG]) ** 2))) / LAG
+    lag = round(2.0 * SHORTEST)  # noise is little of the travel in so many samples
+    return contact_samples(system, record.dt) * float(np.sqrt(np.mean((z[lag:] - z[:-lag]) ** 2))) / lag
 
 
 def _relative(record: Record) -> np.ndarray:

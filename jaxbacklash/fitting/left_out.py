@@ -10,14 +10,10 @@ import math
 
 import numpy as np
 
+from ..shooting.information import freedom
 from ..shooting.levenberg import Levenberg, Minimum, minimise
-from .continuation import TIGHTEST, Continued, log_evidence, tied
-from .information import freedom
-
-NEAR_NOISE, SIGMAS, CHANCE = 1.01, 3.0, 2.0
-"""Root of the reduced chi-square up to which what is left counts as noise, since the noise itself is estimated; how many standard
-deviations of that root may come on top for a verdict (in 80 records of right models it did not exceed 1.013); and how many as
-long as there is more to add, when a small misfit that something else makes is still to be told from chance."""
+from .continuation import Continued, log_evidence, tied
+from .settings import NEAR_NOISE, SURE, TIGHTEST
 
 
 def excess(found: Continued) -> float:
@@ -39,7 +35,7 @@ def misfit(found: Continued) -> float:
     return math.sqrt(max(1.0 + excess(found) / freedom(found.problem, tied=True), 0.0))
 
 
-def most_of_noise(freedom: float, sigmas: float = SIGMAS) -> float:
+def most_of_noise(freedom: float, sigmas: float = SURE) -> float:
     r"""The largest root of the reduced chi-square that noise may leave: its standard deviation is :math:`1/\sqrt{2\nu}`, with
     :math:`\nu` degrees of freedom."""
     return NEAR_NOISE + sigmas / math.sqrt(2.0 * max(freedom, 1.0))

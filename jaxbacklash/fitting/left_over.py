@@ -19,22 +19,11 @@ from ..shooting.problem import Problem
 from ..shooting.windows import Layout, Windows
 from ..signals import estimate_noise, rounding_noise
 from .score import Score, begin_anew, score
+from .settings import EXPLAINED, LAGS, LIKELY, NOISE_KNOWN, ROUNDS, SURE, WHITE
 from .setup import first_guess
 
 if TYPE_CHECKING:
     from .search import Found
-
-QUIETER, CHANCE = 0.97, 2.4
-"""Prediction error, in units of the noise, below which the noise was taken for too large; of a short record, so many standard
-deviations of what chance makes of its samples below 1, which is 0.93 of 600."""
-TOLD = 0.93
-"""Share of what the samples alone tell down to which a fit bears that out."""
-ROUNDS = 3
-"""How often the noise is taken from the fit and the fit from the noise: the second time changes a few percent."""
-WHITE, SURE, LAGS = 0.2, 4.0, 3
-"""Correlation of residuals at the first lags above which they are no white noise, and the same in standard errors."""
-EXPLAINED = 1.3
-"""Prediction error, in units of the noise, above which a model leaves more than noise."""
 
 
 def settle_noise(found: Found, layout: Layout, scored: Sequence[Score], records: Sequence[Record], group: int) -> Settled:
@@ -77,7 +66,7 @@ def quieter(noise: Sequence[float], scored: Sequence[Score], records: Sequence[R
     for own, seen, record in zip(noise, scored, records):
         least = rounding_noise(record.channels[record.observed_name]) / own
         factor = max(seen.rms, least)
-        limit = min(QUIETER, 1.0 - CHANCE / np.sqrt(2.0 * record.samples))
+        limit = 1.0 - max(NOISE_KNOWN, LIKELY / np.sqrt(2.0 * record.samples))
         factors.append(float(factor) if np.isfinite(factor) and 0.0 < factor < limit else 1.0)
     return factors
 
@@ -136,7 +125,7 @@ def why_open(record: Record, noise: float, scored: Score) -> dict[str, str]:
     if name == "T":
         return found
     alone = estimate_noise(record.t, record.channels[name])
-    if alone.told and noise > TOLD * alone.level:
+    if alone.told and noise > (1.0 - 2.0 * NOISE_KNOWN) * alone.level:
         return found
     if scored.rms > EXPLAINED:
         found[name] = f"{name} {rough}, and the model does not explain them"

@@ -22,19 +22,9 @@ from ..shooting.problem import Problem, Unknowns
 from ..shooting.windows import Layout
 from ..showing import Shown
 from .continuation import tied
+from .settings import CLEARLY, FURTHER, JOINED, LAST, LOOSE, NEAR
 from .setup import first_guess
 
-NEAR = 1e-4
-"""How much of half the sum of squares, in units of the noise, may be left to gain a window when a score is told."""
-CLEARLY = 1e-3
-"""The same, as a share of what the misfit exceeds the noise by."""
-STEPS, REMEMBERED = 20, 60
-"""Steps allowed to a score; and to that of a law that remembers, which creeps where noise hides what is remembered."""
-JOINED, NEARLY_FREE = 1.0, 1e-2
-"""Weight of the ties between the shooting windows of a score window; and that from which on they grow where a search with the
-former does not arrive."""
-FURTHER = 0.01
-"""Share of half the sum of squares that a further step promises where a search has not arrived."""
 kept_residuals = kept_jit(residuals)
 
 
@@ -164,11 +154,11 @@ def score(
     begin = Unknowns(np.zeros(unknowns.theta.shape), unknowns.starts, unknowns.coefficients)
     near = NEAR * max(1, int(problem.windows.used))
     # An error of a model that is clearly wrong is quoted to three digits: its starts need not creep on for a fourth.
-    how = Levenberg(atol=near, rtol=CLEARLY, damping=1e-6, limit=STEPS if begin.starts.shape[0] == 2 else REMEMBERED)
+    how = Levenberg(atol=near, rtol=CLEARLY, damping=1e-6, limit=LAST)
     still = tied(still, JOINED)
     solution = minimise(still, begin, how)
     if float(solution.stats["promise"]) > FURTHER * float(solution.stats["cost"]):
-        solution = minimise(still, minimise(tied(still, NEARLY_FREE), begin, how).value, how)
+        solution = minimise(still, minimise(tied(still, LOOSE), begin, how).value, how)
     found, predicted = solution.value, solution.stats["predicted"]
     scores = tuple(_summarise(still, found, predicted, layout, group, i) for i in range(len(layout.first)))
     return scores, Unknowns(unknowns.theta, found.starts, found.coefficients)

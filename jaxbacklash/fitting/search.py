@@ -15,36 +15,19 @@ import equinox as eqx
 import numpy as np
 
 from ..errors import NoAnswer
+from ..shooting.information import freedom, inverse_information
 from ..shooting.levenberg import Levenberg, Minimum, minimise
 from ..shooting.problem import Problem, Unknowns
 from ..shooting.windows import Windows
 from ..system import System
-from .continuation import (
-    BETWEEN,
-    CLOSELY,
-    LOOSEST,
-    ROUGHLY,
-    TIGHTEST,
-    WITHIN_CHANCE,
-    Continued,
-    Stop,
-    continued,
-    in_one_run,
-    log_evidence,
-    sharpened,
-    tied,
-)  # fmt: skip
+from .continuation import Continued, Stop, continued, in_one_run, log_evidence, sharpened, tied
 from .friction_homotopy import sliding_speeds
-from .information import freedom, inverse_information
-from .left_out import CHANCE, misfit, most_of_noise
+from .left_out import misfit, most_of_noise
 from .segment import determines, segment, variance_ratio
+from .settings import BETWEEN, CLOSELY, JOINED, LIKELY, LOOSEST, ROUGHLY, TIGHTEST, WITHIN_CHANCE
 from .setup import first_guess, make_problem
 from .stick_slip import search_stick_slip, sticks_and_slips
 
-NEARLY_TIED = 1.0
-"""Weight of the ties beside which one trajectory has to be as likely, so that nothing is left out."""
-DIRECT = 12
-"""Steps in which a search from where the segment has led to finds one trajectory, if it does at all."""
 NOWHERE = "no start led to a finite misfit: the record may hold something else than this model's motion"
 
 
@@ -184,18 +167,18 @@ def _one_trajectory(problem: Problem, start: Unknowns) -> Continued | None:
     """
     if sliding_speeds(problem):
         return None
-    at, beside = tied(problem, TIGHTEST), tied(problem, NEARLY_TIED)
+    at, beside = tied(problem, TIGHTEST), tied(problem, JOINED)
     # Nearly free windows end close to tied ones: a damped step would only fight the ties, which are stiff.
-    minimum = minimise(at, start, Levenberg(limit=DIRECT, atol=CLOSELY, damping=1e-9))
+    minimum = minimise(at, start, Levenberg(limit=BETWEEN, atol=CLOSELY, damping=1e-9))
     count, steps = freedom(problem, tied=True), int(minimum.stats["steps"])
-    if steps >= DIRECT or not 2.0 * float(minimum.stats["cost"]) < most_of_noise(count, CHANCE) ** 2 * count:
+    if steps >= BETWEEN or not 2.0 * float(minimum.stats["cost"]) < most_of_noise(count, LIKELY) ** 2 * count:
         return None
     looser = minimise(beside, minimum.value, Levenberg(limit=BETWEEN, atol=ROUGHLY))
     height = log_evidence(at, minimum)
     if height < log_evidence(beside, looser) - WITHIN_CHANCE:
         return None
-    stops = (Stop(TIGHTEST, height, steps), Stop(NEARLY_TIED, log_evidence(beside, looser), int(looser.stats["steps"])))
-    return Continued(at, minimum, height, stops, True, {TIGHTEST: minimum.value, NEARLY_TIED: looser.value})
+    stops = (Stop(TIGHTEST, height, steps), Stop(JOINED, log_evidence(beside, looser), int(looser.stats["steps"])))
+    return Continued(at, minimum, height, stops, True, {TIGHTEST: minimum.value, JOINED: looser.value})
 
 
 def _continued(problem: Problem, start: Unknowns, first: float = LOOSEST) -> Continued:
@@ -204,7 +187,7 @@ def _continued(problem: Problem, start: Unknowns, first: float = LOOSEST) -> Con
     found = continued(problem, start, first=first, speeds=speeds)
     if not speeds or not found.reached or found.tie >= TIGHTEST:
         return found
-    leaves_noise = misfit(found) <= most_of_noise(freedom(problem, tied=True), CHANCE)
+    leaves_noise = misfit(found) <= most_of_noise(freedom(problem, tied=True), LIKELY)
     return sharpened(found, speeds) if leaves_noise else found
 
 

@@ -12,13 +12,7 @@ import numpy as np
 from ..shooting.levenberg import Minimum
 from ..shooting.multiple_shooting import per_window
 from ..shooting.problem import Problem, Unknowns
-
-WINDOWS = 128
-"""Windows of a segment, the last of which holds no sample."""
-TIMES = 3
-"""A record must be so many times longer than a segment; else all of it is as cheap."""
-WELL_KNOWN = 0.1
-"""A segment tells a parameter where its standard error there is below this part of the parameter's scale."""
+from .settings import TIMES, WELL_KNOWN, WINDOWS
 
 
 def segment(problem: Problem, guess: Unknowns) -> tuple[Problem, Unknowns] | None:

@@ -21,17 +21,10 @@ from ..regression.force_loop import read_loop
 from ..shooting.problem import Problem, Unknowns
 from ..shooting.windows import Windows
 from ..system import System, observe
+from .settings import NEWTON, PERIOD, ROUNDING, UNLIKE_A_LOOP
 from .stick_slip import march, place, sticks_and_slips
 
 MODELS = ("joint", "linear", "free")
-UNLIKE_A_LOOP = 0.5
-"""Share of a transmitted force that its loop may leave unexplained."""
-PERIOD = 20.0
-"""Samples in a period of the contact's resonance at the start, where a record of transmitted force has to tell the inertia."""
-ROUNDING = 1e-9
-"""What a place that is read back may be off by, as a share of what is seen."""
-NEWTON = 3
-"""Steps to where a measuring chain shows what it should: scales and shifts need one, a law of the user's own may need more."""
 
 
 def base_system(

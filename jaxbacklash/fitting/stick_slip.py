@@ -23,12 +23,9 @@ from ..shooting.levenberg import Levenberg, minimise
 from ..shooting.multiple_shooting import trajectory
 from ..shooting.problem import Problem, Unknowns
 from ..system import System
+from .settings import SHORTEST, TIGHTEST
 
 Array = Any
-TIE = 100.0
-"""How sharply the windows are tied where the normal equations are taken."""
-FASTEST = 4.0
-"""Samples in a period of the contact's resonance, at least: a lighter link cannot show in the record."""
 
 
 def sticks_and_slips(system: System) -> bool:
@@ -78,7 +75,7 @@ def run(problem: Problem, theta: Any) -> tuple[Unknowns, dict[str, Any]]:
     """One run with these parameters, and what it shows: ``cost``, ``schur``, ``score``, ``predicted``."""
     coefficients = np.asarray(problem.windows.coefficients)
     unknowns = Unknowns(np.asarray(theta), np.asarray(march(problem, theta, coefficients)), coefficients)
-    tied = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIE))
+    tied = eqx.tree_at(lambda p: p.tie, problem, np.asarray(TIGHTEST))
     return unknowns, minimise(tied, unknowns, Levenberg(limit=1)).stats
 
 
@@ -140,7 +137,7 @@ def _with_lightest(problem: Problem) -> np.ndarray:
     column = np.flatnonzero(problem.directions[0])
     if column.size and problem.system.contact is not None:
         dt = float(problem.windows.panel) * problem.windows.every
-        lightest = float(problem.system.contact.stiffness) * (FASTEST * dt / (2.0 * np.pi)) ** 2
+        lightest = float(problem.system.contact.stiffness) * (SHORTEST * dt / np.pi) ** 2
         j = int(column[0])
         lower[j] = max(lower[j], (lightest - float(problem.base[0])) / float(problem.directions[0, j]))
     return lower

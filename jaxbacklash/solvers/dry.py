@@ -16,7 +16,7 @@ from typing import Any, NamedTuple, Protocol
 import jax
 import jax.numpy as jnp
 
-from .panels import SHARES, WEIGHTS, Cubic, Edges, Scalar, State, _add, _first_kink
+from .panels import SHARES, WEIGHTS, Cubic, Edges, Playing, Scalar, State, _add, _first_kink
 
 SOON = 1e-4
 """Share of a panel within which an event counts as met: a fraction of a microsecond."""
@@ -24,7 +24,7 @@ STILL = 1e-9
 """Speed that counts as rest [rad/s]."""
 
 
-class Sliding(Protocol):
+class Sliding(Playing, Protocol):
     """What a panel needs of a system with dry friction at some of the ports ``slides``, ``"joint"`` and ``"ground"``."""
 
     @property
@@ -32,11 +32,6 @@ class Sliding(Protocol):
 
     @property
     def has_play(self) -> bool: ...
-
-    @property
-    def play_moves(self) -> bool: ...
-
-    def edges(self, t: Scalar, x: Scalar) -> tuple[Scalar, Scalar]: ...
 
     def kinks(self, t: Scalar, state: State, drive: Any, side: Scalar | None, ddz: Scalar) -> list[tuple[Scalar, Scalar]]: ...
 

@@ -56,15 +56,19 @@ class Cubic(NamedTuple):
         return 2.0 * self.c + 6.0 * tau * self.d
 
 
-class Switching(Protocol):
-    """What a panel needs of a system: its rates in a known region, and where the regions end."""
-
-    def rates(self, t: Scalar, state: State, drive: Any, side: Scalar | None = None) -> State: ...
+class Playing(Protocol):
+    """A system with a play, whose edges may move."""
 
     @property
     def play_moves(self) -> bool: ...
 
     def edges(self, t: Scalar, x: Scalar) -> tuple[Scalar, Scalar]: ...
+
+
+class Switching(Playing, Protocol):
+    """What a panel needs of a system: its rates in a known region, and where the regions end."""
+
+    def rates(self, t: Scalar, state: State, drive: Any, side: Scalar | None = None) -> State: ...
 
     def kinks(self, t: Scalar, state: State, drive: Any, side: Scalar | None, ddz: Scalar) -> list[tuple[Scalar, Scalar]]: ...
 
@@ -117,7 +121,7 @@ class Edges(NamedTuple):
     high: tuple[Scalar, Scalar, Scalar]
 
     @classmethod
-    def over(cls, system: Switching, t: Scalar, base: Cubic, h: Scalar) -> Edges:
+    def over(cls, system: Playing, t: Scalar, base: Cubic, h: Scalar) -> Edges:
         """The edges of a system from ``t`` on, the base moving as ``base``: parabolas through three moments of a panel."""
         begin = system.edges(t, base.a)
         if not system.play_moves:

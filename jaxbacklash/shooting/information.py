@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..shooting.problem import Problem
+from .problem import Problem
 
 
 def freedom(problem: Problem, *, tied: bool = False) -> float:
