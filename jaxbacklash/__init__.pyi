@@ -50,6 +50,8 @@ from .models import two_link as two_link
 from .parameters import param as param
 from .precision import enable_double_precision as enable_double_precision
 from .program import start as start
+from .quasistatic import LostMotion as LostMotion
+from .quasistatic import lost_motion as lost_motion
 from .records import MeasuredSeries as MeasuredSeries
 from .records import Record as Record
 from .records import read_record as read_record

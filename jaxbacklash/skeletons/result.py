@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from ..frames import dataframe, known
+from ..frames import dataframe
 from ..records import Record
 from ..showing import Shown
+from ..value import Value as Value
+from ..value import columns_of as columns_of
 from .fundamental import Fundamental
 from .inversion import Inversion, Terms, invert
 from .masks import Mask
@@ -19,23 +20,6 @@ NAMES = ("backlash", "stiffness", "damping")
 LABELS = {"backlash": "total play b", "stiffness": "contact stiffness k", "damping": "viscous damping c", "inertia": "inertia J"}
 INDEX = ("method", "parameter")
 METHODS = {"hilbert": "Hilbert transform", "wavelet": "wavelet ridge"}
-
-
-@dataclass(frozen=True)
-class Value:
-    """One parameter in ``unit``; errors allow for correlated residuals. All are None, with a ``why``, where there is no value."""
-
-    value: float | None
-    stderr: float | None
-    ci95: tuple[float, float] | None
-    unit: str
-    why: str = ""
-
-    def as_json(self) -> dict[str, Any]:
-        """The entry of result.json; a null value has its ``why``."""
-        ends = None if self.ci95 is None else list(self.ci95)
-        entry: dict[str, Any] = {"value": self.value, "stderr": self.stderr, "ci95": ends, "unit": self.unit}
-        return entry | ({"why": self.why} if self.why else {})
 
 
 @dataclass(frozen=True)
@@ -181,16 +165,6 @@ class Skeletons(Shown):
         rows = [(method.method, name, value) for method in self.methods for name, value in method.parameters.items()]
         return dataframe({"method": [row[0] for row in rows], "parameter": [row[1] for row in rows],
                           **columns_of([row[2] for row in rows])}, INDEX)  # fmt: skip
-
-
-def columns_of(values: Sequence[Value]) -> dict[str, Any]:
-    """Values as columns of a table."""
-    return {
-        "value": known([one.value for one in values]), "stderr": known([one.stderr for one in values]),
-        "low": known([None if one.ci95 is None else one.ci95[0] for one in values]),
-        "high": known([None if one.ci95 is None else one.ci95[1] for one in values]),
-        "unit": [one.unit for one in values], "why": [one.why for one in values],
-    }  # fmt: skip
 
 
 def text(found: Skeletons) -> str:
