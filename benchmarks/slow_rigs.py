@@ -214,7 +214,7 @@ def hidden_rigs(each: int, seed: int) -> list[Rig]:
         noisy = angle + 0.01 * play * draw.standard_normal(t.size)
         add("loaded one way", jb.Record(t, {"T": torque, "z": noisy}), ("edges not reached", "one"))
     for rig in gears(each, draw, friction_share=(2.0, 6.0)):
-        found.append(Rig(rig.name, "moved by its inertia", rig.record, 0.0, rig.ratio, ("inertia", "not held by friction", "lag")))
+        found.append(Rig(rig.name, "moved by its inertia", rig.record, 0.0, rig.ratio, ("inertia", "not held by friction")))
     for rig in servos(each, draw, quickest=(4.0, 10.0), settled=False):
         found.append(Rig(rig.name, "pulled too shortly", rig.record, 0.0, None, ("edges not reached", "does not stay")))
     return found

@@ -223,6 +223,30 @@ def skeleton(
     )  # fmt: skip
 
 
+@app.command("lost-motion", cls=Checked, epilog="Example: jaxbacklash lost-motion slow1.csv --columns t=t,motor=enc1,link=enc2 --ratio 35")
+@reads
+def lost_motion(
+    record: Annotated[
+        Path,
+        typer.Argument(
+            callback=there,
+            help="A slow record: t with x and z, y or link (two positions), F and z (pulled, F of -1, 0, 1), or T and z (a loop)",
+        ),
+    ],
+    wind_up: Annotated[
+        float | None, typer.Option("--wind-up", help="Elastic wind-up in the lost motion, both ways together [rad; m], where known")
+    ] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder for result.json and report.html")] = None,
+    json: Json = False,
+    reading: Reading = AS_IT_IS,
+    translation: Translation = False,
+) -> None:
+    """Read the play of a slow record without dynamics: where friction carries the link, a force pulls it, or a torque loads it."""
+    from .commands import lost_motion as command
+
+    command.run(record, wind_up=wind_up, out=out, as_json=json, reading=reading, translational=translation)
+
+
 @computes(epilog="Example: jaxbacklash chaos run1.csv --channel z --out chaos1")
 @reads
 def chaos(

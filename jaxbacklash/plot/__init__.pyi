@@ -17,6 +17,7 @@ from .labelled import basins as basins
 from .labelled import bifurcation as bifurcation
 from .labelled import exponents as exponents
 from .labelled import map as map
+from .levels import lost_motion as lost_motion
 from .missing import missing_torque as missing_torque
 from .missing import torque_over as torque_over
 from .missing import where_it_fails as where_it_fails

@@ -57,7 +57,7 @@ def carried(
     few_t, few_x, few_y = (thinned(values) for values in (t, x, y))
     told = waves(float(x.min()), float(x.max()), ratio=ratio, angular=angular)
     drift = drift_rows(few_t, passes(few_x, least).count)
-    motionless = follows(x, y, counts, least)
+    motionless = follows(x, y, counts, ratio)
     if motionless.holds is False:
         return Reading("carried", (motionless,), 0)
     found = crossing(few_t, few_x, few_y, least, drift, told)
@@ -102,14 +102,14 @@ def _read(
     around = over_angle(z, -where.side, driver, parts, fits)
     noise = float(np.sqrt(np.average(fits.fit.left**2, weights=parts.size)))
     conditions = (
-        *first, no_lag(found, fits), clear_of_counts(width, low, high, max(counts), float(np.ptp(parts.mean(z)))),
+        *first, no_lag(found, fits, float(t[1] - t[0])), clear_of_counts(width, low, high, max(counts), float(np.ptp(parts.mean(z)))),
         at_edges(noise, width),
         stays_put(driver, follower, way, min(width, found.travel)), at_one_edge(z, way, found, width),
     )  # fmt: skip
     extra = {name: (*fits.coefficient(name), fits.freedom) for name in fits.names if name == "torque"}
     return Reading(
         "carried", conditions, count, width, stderr, (low, high), fits.freedom, np.where(used, -where.side, 0.0), _drift(slow, fits), noise,
-        around, errors_of(fits), *_bends(fits, parts, z, driver, where.side), fits,
+        around, errors_of(fits), *_bends(fits, parts, z, driver, where.side), fits, bool(notes),
         (*notes, *(("the link drives and the motor follows",) if link_drives else ())), extra,
     )  # fmt: skip
 

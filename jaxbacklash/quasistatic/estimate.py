@@ -19,6 +19,8 @@ from .result import LostMotion
 
 SIGNS = 3
 """Values of a force up to which only its sign is taken to be known."""
+SLANT = 1e-3
+"""Slope of z over the angle from which on it is told."""
 WORTH = 3.0
 """Standard errors by which the stiffness has to be clear of nothing before wind-up is taken off the lost motion."""
 
@@ -87,7 +89,7 @@ def lost_motion(
         notes = (*notes, *_ratio_said(read, gear_ratio))
     return LostMotion(
         record, read.way, parameters, read.conditions, read.passes, read.side, read.drift, read.noise, read.over_angle,
-        read.errors, read.peak_to_peak, includes, translational, notes,
+        read.errors, read.peak_to_peak, includes, translational, read.turned, notes,
     )  # fmt: skip
 
 
@@ -154,11 +156,10 @@ def _apart(
 
 
 def _ratio_said(read: Reading, gear_ratio: float | None) -> tuple[str, ...]:
-    """Whether the ratio that was stated is exact by the record."""
+    """What the record says of a ratio that was stated: a straight line of z over the angle is that, or an encoder off its centre."""
     assert read.slope is not None
     slope, error = read.slope
-    if abs(slope) < max(3.0 * quantile(read.freedom) * error, 1e-4):
+    if abs(slope) < max(quantile(read.freedom) * error, SLANT):
         return ()
-    if gear_ratio is None:
-        return (f"the link goes {1.0 + slope:.5g} +- {error:.1g} times as far as x",)
-    return (f"the ratio by this record is {gear_ratio / (1.0 + slope):.6g}, not {gear_ratio:g}; the play is not touched by that",)
+    by_record = f"{1.0 + slope:.5g} times as far as x" if gear_ratio is None else f"as with a ratio of {gear_ratio / (1.0 + slope):.5g}"
+    return (f"the link goes {by_record}, by a ratio that is not exact or an encoder off its centre; the play is not touched by that",)

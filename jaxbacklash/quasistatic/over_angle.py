@@ -9,6 +9,8 @@ from .clustered import clustered
 from .levels import Levels
 from .reading import Error, OverAngle
 
+FINE = 400
+"""Steps at which the middle of the levels is told."""
 BINS = 24
 """Parts of the angle that are shown."""
 
@@ -30,7 +32,8 @@ def over_angle(z: np.ndarray, side: np.ndarray, angle: np.ndarray, parts: Cells,
         error = float(np.sqrt(sum(np.var(rest) / count for rest, count in zip(both, groups, strict=True))))
         rows.append((0.5 * (edges[one] + edges[one + 1]), fits.width + float(both[1].mean() - both[0].mean()), error))
     at, width, stderr = np.array(rows).T if rows else np.zeros((3, 0))
-    return OverAngle(at, fits.curve.rows(at) @ fits.of_curve() if at.size else at, width, stderr)
+    fine = np.linspace(fits.curve.low, fits.curve.high, FINE)
+    return OverAngle(at, width, stderr, fine, fits.curve.rows(fine) @ fits.of_curve())
 
 
 def errors_of(fits: Levels) -> tuple[Error, ...]:

@@ -62,8 +62,8 @@ def pulled(
     width = abs(fits.width)
     notes = ("z goes against the force: one of the two has the other sign",) if fits.width + reach < 0.0 else ()
     conditions = (
-        *first, clear_of_counts(width, width - reach, width + reach, max(counts)),
-        _at_rest(z, sign, number, share, long, width, noise), at_edges(noise, width),
+        *first, _at_rest(z, sign, number, share, long, width),
+        clear_of_counts(width, width - reach, width + reach, max(counts)), at_edges(noise, width),
     )  # fmt: skip
     drift = slow @ fits.fit.values[1 : 1 + slow.shape[1]]
     return Reading(
@@ -82,7 +82,7 @@ def _both(signs: np.ndarray) -> Condition:
 
 
 def _at_rest(
-    z: np.ndarray, sign: np.ndarray, number: np.ndarray, share: np.ndarray, long: np.ndarray, width: float, noise: float
+    z: np.ndarray, sign: np.ndarray, number: np.ndarray, share: np.ndarray, long: np.ndarray, width: float
 ) -> Condition:
     """Whether the link has come to rest before the force turns round."""
     third, last = (

@@ -25,12 +25,19 @@ class Condition:
 
 @dataclass(frozen=True)
 class OverAngle:
-    """Two curves over the angle, (A,) each: the middle of the two levels less drift, and their distance with its error."""
+    """What both levels do over the angle.
+
+    Attributes
+    ----------
+    angle, width, stderr : (A,) their distance in parts of the angle, with its error
+    fine, middle : (M,) their middle, less drift, at finer steps
+    """
 
     angle: np.ndarray
-    middle: np.ndarray
     width: np.ndarray
     stderr: np.ndarray
+    fine: np.ndarray
+    middle: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -56,6 +63,7 @@ class Reading:
     side : (N,) the side at every sample, 0 where it does not count
     drift : (N,) what was taken for a drift
     noise : standard deviation of what is left at an edge
+    turned : whether z was taken for x - y
     """
 
     way: str
@@ -73,6 +81,7 @@ class Reading:
     peak_to_peak: float | None = None
     slope: tuple[float, float] | None = None
     levels: Levels | None = None
+    turned: bool = False
     notes: tuple[str, ...] = ()
     extra: dict[str, tuple[float, float, float]] = field(default_factory=dict)
 

@@ -43,6 +43,7 @@ class LostMotion(Shown):
     transmission_error : waves of the motor's and the link's turn
     peak_to_peak : of what depends on the angle alone, without its straight line
     includes_wind_up : whether ``backlash`` is the lost motion, of which elastic wind-up under the friction may be a part
+    turned : whether z was taken for x - y
     notes : sentences
     """
 
@@ -59,6 +60,7 @@ class LostMotion(Shown):
     peak_to_peak: float | None
     includes_wind_up: bool
     translational: bool
+    turned: bool = False
     notes: tuple[str, ...] = ()
 
     @property

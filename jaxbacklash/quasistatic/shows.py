@@ -14,21 +14,26 @@ FEWEST = 4
 STILL, AT_EDGE, TOOK_LAG = 0.35, 0.5, 1.15
 """Slope of the link against the drive while it crosses, up to which the link stands; scatter at an edge over half the lost motion;
 what a lag leaves over what play does, down to which the two are not told apart."""
+DRAGGED, IN_STEP = 0.02, 0.98
+"""Share of the drive's way that a link which stands in its play may be dragged; correlation with the drive of one that is geared."""
 EARLY = 0.35
 """Share of the lost motion by which z may leave its edge before the drive turns."""
 OTHERWISE = 4.0
 """How far z goes, in bounds of the play, from which on something else must move it."""
-SLOPE = 0.2
+SLOPE = 0.1
 """How far the link's slope against the drive may be from 1."""
 
 
-def follows(x: np.ndarray, y: np.ndarray, counts: tuple[float, ...], least: float) -> Condition:
+def follows(x: np.ndarray, y: np.ndarray, counts: tuple[float, ...], ratio: float | None) -> Condition:
     """Whether the link moves at all."""
     moved, drive = float(np.ptp(y)), float(np.ptp(x))
-    still = max(3.0 * counts[1], 10.0 * rough_noise(y), 1e-3 * drive)
+    still = max(3.0 * counts[1], 10.0 * rough_noise(y))
     found = f"the drive ranges over {drive:.3g}, the link over {moved:.3g}"
-    if moved > still:
-        return Condition("link carried", None, found)
+    # A link that goes a little of the way, and in step, is geared otherwise than was said; one that stands may be dragged a little.
+    slope, together = moved / drive, float(abs(np.corrcoef(x, y)[0, 1])) if moved > 0.0 else 0.0
+    geared = together > IN_STEP and (ratio is None or abs(slope / ratio**2 - 1.0) < 0.3)
+    if moved > still and (slope > DRAGGED or geared):
+        return Condition("link carried", True, found)
     why = f"edges not reached: the link stands still while its drive ranges over {drive:.4g}, so the play is at least about that"
     return Condition("link carried", False, found, why, "move the drive farther, until the link follows both ways")
 
@@ -76,6 +81,9 @@ def clear_of_counts(width: float, low: float, high: float, count: float, ranges:
         return Condition("play above counts", False, said, why, "use a finer encoder at the link")
     if low > 0.0:
         return Condition("play above counts", True, said)
+    if high <= 0.0:
+        why = "the link is ahead of its drive where one that is carried lags: it is moved by its inertia, or by its weight"
+        return Condition("link carried", False, said, why, "move more slowly, or fit the dynamics with jaxbacklash fit")
     why = f"the play does not show: z hardly differs between the directions, so that the play is less than {max(top, count):.3g}"
     if ranges > OTHERWISE * max(top, count):
         why += f", unless the link is moved by its inertia or its weight: z goes over {ranges:.3g} all the same"
@@ -92,16 +100,16 @@ def at_edges(noise: float, width: float) -> Condition:
     return Condition("z stays at an edge", False, said, why, "move more slowly, or fit the dynamics with jaxbacklash fit")
 
 
-def no_lag(found: Crossing, fits: Levels) -> Condition:
+def no_lag(found: Crossing, fits: Levels, step: float) -> Condition:
     """Whether it is play, not one encoder seen later than the other."""
     said = f"a lag in place of play leaves {np.sqrt(found.lagging / max(found.left, 1e-300)):.3g} times as much"
     late = fits.lag is not None and not fits.lag_open and abs(fits.lag) > 3.0 * fits.lag_stderr
-    if fits.interval[0] <= 0.0 and late and fits.lag is not None:
+    if fits.interval[0] <= 0.0 < fits.interval[1] and late and fits.lag is not None and abs(fits.lag) > step:
         why = (
-            f"z goes with the speed, not with the direction: a lag of {fits.lag:.3g} s between the encoders, or viscous wind-up; "
-            f"beside it the play is less than {max(fits.interval[1], 0.0):.3g}"
+            f"z goes with the speed, not with the direction: a lag of {fits.lag:.3g} s between the encoders, viscous wind-up, or a "
+            f"link moved by its inertia; beside it the play is less than {max(fits.interval[1], 0.0):.3g}"
         )
-        return Condition("play, not lag", False, said, why, "read both encoders at one moment")
+        return Condition("play, not lag", False, said, why, "read both encoders at one moment, and move more slowly")
     if found.lagging > TOOK_LAG * found.left or fits.beside_lag > 0.0 or fits.interval[0] <= 0.0:
         if late:
             said += f"; beside play z goes with the speed, by {fits.lag:.3g} s"

@@ -46,6 +46,13 @@ def facts(result: Entry, record: Entry, path: str, stages: Sequence[Entry]) -> I
         yield "also fitted", f"{other.get('path')}: {short(other.get('rms_over_noise'))} times its noise{share(other, record)}"
 
 
+def rests_on(result: Entry) -> Iterator[tuple[str, str]]:
+    """What a reading without a model rests on: each condition, whether it holds, and what was found."""
+    for entry in result.get("conditions") or []:
+        holds = {True: "yes", False: "no"}.get(entry.get("holds"), "the record cannot tell")
+        yield f"condition: {entry.get('name')}", f"{holds}; {entry.get('found')}"
+
+
 def share(errors: Entry, record: Entry, key: str = "nrmse") -> str:
     """What an error is of what was measured, to stand after it: ``, 12 % of the motion``; nothing where that is not known."""
     known: Any = errors.get(key)

@@ -22,11 +22,12 @@ from .facts import (
     measured,
     parameters_of,
     parts,
+    rests_on,
     share,
     skeleton_tables,
 )
 
-SETTLED = ("complete", "chaotic", "regular", "stochastic")  # verdicts that leave nothing open
+SETTLED = ("complete", "chaotic", "regular", "stochastic", "read")  # verdicts that leave nothing open
 MARKS = {"found": "✓", "one-sided": "◐", "given": "·"}  # a sign beside each word, for those who see no colour
 
 
@@ -53,12 +54,12 @@ def summarise(result: Entry) -> dict[str, Any]:
         "no_intervals": _no_intervals(result),
         "stages": stage_rows(stages, record) if len(stages) > 1 else [],
         "stage_heads": _stage_heads(stages),
-        "scores": _scores(stages[-1], record) if stages else [],
+        "scores": _scores(stages[-1], record) if stages and "rms_over_noise" in stages[-1] else [],
         "candidates": candidate_tables(stages),
         "alternatives": [" + ".join(map(str, names)) for names in result.get("alternatives") or [] if names],
         "alternatives_text": str(result.get("alternatives_text") or ""),
         "cross_check": cross_check_table(result.get("cross_check"), stages[-1] if stages else {}),
-        "facts": [*facts(result, record, path, stages or [best_method(result)]), *chosen(result)],
+        "facts": [*facts(result, record, path, stages or [best_method(result)]), *chosen(result), *rests_on(result)],
         "per_inertia": bool(result.get("per_inertia")),
         "command_line": str(result.get("command_line") or ""),
         "version": str(result.get("version") or ""),
