@@ -2,13 +2,13 @@
 
     python -m benchmarks.lost_motion [--rigs 100] [--seed 0] [--tiny] [--each]
 
-Rigs are drawn at random (`benchmarks.slow_rigs`): gears and cables whose link friction carries, simulated by a non-smooth scheme of
-its own; tendons whose contact begins little by little and which creep; servos pulled to and fro by a force of which the sign is
-written down; loops of torque over angle. Encoders count, read with noise, sit off their centre and lag by part of a sample; the gear
-has an error once a turn of the motor; z drifts; strokes are few. "holds" is the share of intervals with the lost motion inside, which
-is the play with the wind-up under friction; "refused" are rigs that got no number though they should have one; "width" is the
-interval's half width as a share of the play (median). Then rigs that do not show their play: "right" were refused for the reason
-that is true, "given" got a number all the same.
+Rigs are drawn at random (`benchmarks.slow_rigs`): gears and cables whose link friction carries, simulated by a non-smooth
+scheme of its own; tendons whose contact begins little by little and which creep; servos pulled to and fro by a force of which
+the sign is written down; loops of torque over angle. Encoders count, read with noise, sit off their centre and lag by part of
+a sample; the gear has an error once a turn of the motor; z drifts; strokes are few. "holds" is the share of intervals with the
+lost motion inside, which is the play with the wind-up under friction; "refused" are rigs that got no number though they should
+have one; "width" is the interval's half width as a share of the play (median). Then rigs that do not show their play: "right"
+were refused for the reason that is true, "given" got a number all the same.
 """
 
 from __future__ import annotations

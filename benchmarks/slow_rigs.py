@@ -1,7 +1,7 @@
 """Random rigs whose slow records show a play, and rigs whose records do not: what `benchmarks.lost_motion` reads.
 
-Every draw is of what such rigs have in common, not of one rig: gears of 8 to 120, plays of 1 to 30 mrad, three to fourteen strokes,
-encoders of 12 to 18 bits, noise up to a twentieth of the play, errors once a turn as large as the play, slow drifts.
+Every draw is of what such rigs have in common, not of one rig: gears of 8 to 120, plays of 1 to 30 mrad, three to fourteen
+strokes, encoders of 12 to 18 bits, noise up to a twentieth of the play, errors once a turn as large as the play, slow drifts.
 """
 
 from __future__ import annotations
@@ -51,7 +51,14 @@ def strokes(t: np.ndarray, draw: np.random.Generator, amplitude: float, period: 
 
 
 def measured(
-    t: np.ndarray, x: np.ndarray, y: np.ndarray, draw: np.random.Generator, play: float, ratio: float, *, counts: float | None = None
+    t: np.ndarray,
+    x: np.ndarray,
+    y: np.ndarray,
+    draw: np.random.Generator,
+    play: float,
+    ratio: float,
+    *,
+    counts: float | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """What two encoders read: counts, noise, an encoder off its centre, the gear's error, drift, part of a sample of lag."""
     y = y + draw.uniform(0.0, 0.7) * play * np.sin(ratio * x + draw.uniform(0, 6))
@@ -68,7 +75,9 @@ def measured(
     return np.round(x / motor) * motor, np.round(y / count) * count
 
 
-def gears(count: int, draw: np.random.Generator, *, friction_share: tuple[float, float] = (0.01, 0.2), seconds: float = 0.0) -> list[Rig]:
+def gears(
+    count: int, draw: np.random.Generator, *, friction_share: tuple[float, float] = (0.01, 0.2), seconds: float = 0.0
+) -> list[Rig]:
     """Gears and cables that carry a link with inertia and friction: the largest acceleration takes a share of the friction."""
     step_rate, rigs = 1.0 / FINE, []
     plays = 10.0 ** draw.uniform(-3.0, -1.5, count)
@@ -113,7 +122,9 @@ def tendons(count: int, draw: np.random.Generator) -> list[Rig]:
     return rigs
 
 
-def servos(count: int, draw: np.random.Generator, *, quickest: tuple[float, float] = (0.5, 10.0), settled: bool = True) -> list[Rig]:
+def servos(
+    count: int, draw: np.random.Generator, *, quickest: tuple[float, float] = (0.5, 10.0), settled: bool = True
+) -> list[Rig]:
     """Servos that hold while their link is pulled both ways by a force of which only the sign is written down."""
     longest, rigs = 12.0, []
     fine = np.arange(0.0, longest, FINE)
@@ -163,7 +174,11 @@ def loops(count: int, draw: np.random.Generator) -> list[Rig]:
         shape = np.sin(phase) if draw.random() < 0.5 else 2.0 / np.pi * np.arcsin(np.sin(phase))
         z = np.where(shape > 0.0, ends[0], ends[1]) * shape
         torque = loop(z, play, (stiffness[0], stiffness[1]), friction, draw.choice([0.0, 0.3]) / max(load / stiffness))
-        z = z + play * 10.0 ** draw.uniform(-3.0, -1.3) * draw.standard_normal(t.size) + 0.1 * play * draw.uniform(-1, 1) * t / t[-1]
+        z = (
+            z
+            + play * 10.0 ** draw.uniform(-3.0, -1.3) * draw.standard_normal(t.size)
+            + 0.1 * play * draw.uniform(-1, 1) * t / t[-1]
+        )
         torque = torque + load * 10.0 ** draw.uniform(-3.5, -2.0) * draw.standard_normal(t.size)
         count_of_z = play / draw.uniform(5.0, 100.0)
         rigs.append(Rig(f"loop {index}", "loop", jb.Record(t, {"T": torque, "z": np.round(z / count_of_z) * count_of_z}), play))
@@ -188,27 +203,30 @@ def hidden_rigs(each: int, seed: int) -> list[Rig]:
     for _ in range(each):
         play = 10.0 ** draw.uniform(-2.5, -1.5)
         t = np.arange(0.0, 40.0, 0.01)
-        fresh = lambda x, y, **how: measured(t, x, y, draw, play, 20.0, **how)  # noqa: E731
         one, sure = np.ones(1), frozenset("xyz")
         x = 0.6 * np.sin(2.0 * np.pi * t * draw.uniform(0.5, 1.2) / t[-1])
-        a, b = fresh(x, played(x, 0.5 * play * one, one))
+        a, b = measured(t, x, played(x, 0.5 * play * one, one), draw, play, 20.0)
         add("too few reversals", jb.Record(t, {"x": a, "y": b}), ("too few reversals", "one way only"), 20.0)
         x = draw.uniform(0.2, 0.45) * play * np.sin(2.0 * np.pi * t * 5.0 / t[-1])
         count = play / 50.0
         link = np.round(1e-3 * play * draw.standard_normal(t.size) / count) * count
         add("edges not reached", jb.Record(t, {"x": x, "y": link + 1e-9 * np.sin(t)}), ("edges not reached",), 20.0)
         x = 0.6 * np.sin(2.0 * np.pi * t * 5.0 / t[-1])
-        a, b = fresh(x, played(x, 0.5 * play * one, one), counts=play / draw.uniform(0.1, 0.6))
+        a, b = measured(t, x, played(x, 0.5 * play * one, one), draw, play, 20.0, counts=play / draw.uniform(0.1, 0.6))
         add("below a count", jb.Record(t, {"x": a, "y": b}), ("below a count", "does not show"), 20.0)
-        a, b = fresh(x, np.interp(t - draw.uniform(3.0, 8.0) * 0.01, t, x))
+        a, b = measured(t, x, np.interp(t - draw.uniform(3.0, 8.0) * 0.01, t, x), draw, play, 20.0)
         add("lag alone", jb.Record(t, {"x": a, "y": b}), ("lag",), 20.0)
-        a, b = fresh(x, x - 0.5 * play)
+        a, b = measured(t, x, x - 0.5 * play, draw, play, 20.0)
         add("loaded to one side", jb.Record(t, {"x": a, "y": b}), ("does not show", "below a count"), 20.0)
-        a, b = fresh(x, played(x, 0.5 * play * one, one))
+        a, b = measured(t, x, played(x, 0.5 * play * one, one), draw, play, 20.0)
         add("ratio as 1/N", jb.Record(t, {"x": a * 400.0, "y": b}, confirmed=sure), ("ratio",), 1.0 / 20.0)
         add("opposite encoders", jb.Record(t, {"x": a, "y": -b}, confirmed=sure), ("opposite",), 20.0)
         pull = np.where(t % 1.0 < 0.5, 1.0, 0.0)
-        add("pulled one way", jb.Record(t, {"F": pull, "z": 0.5 * play * pull + 0.01 * play * draw.standard_normal(t.size)}), ("one way",))
+        add(
+            "pulled one way",
+            jb.Record(t, {"F": pull, "z": 0.5 * play * pull + 0.01 * play * draw.standard_normal(t.size)}),
+            ("one way",),
+        )
         angle = play * np.clip(1.5 * np.sin(t), 0.0, None)
         torque = loop(angle, play, (1e3, 1e3), 0.02 * play * 1e3)
         noisy = angle + 0.01 * play * draw.standard_normal(t.size)

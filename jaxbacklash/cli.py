@@ -223,7 +223,9 @@ def skeleton(
     )  # fmt: skip
 
 
-@app.command("lost-motion", cls=Checked, epilog="Example: jaxbacklash lost-motion slow1.csv --columns t=t,motor=enc1,link=enc2 --ratio 35")
+@app.command(
+    "lost-motion", cls=Checked, epilog="Example: jaxbacklash lost-motion slow1.csv --columns t=t,motor=enc1,link=enc2 --ratio 35"
+)
 @reads
 def lost_motion(
     record: Annotated[
@@ -234,14 +236,16 @@ def lost_motion(
         ),
     ],
     wind_up: Annotated[
-        float | None, typer.Option("--wind-up", help="Elastic wind-up in the lost motion, both ways together [rad; m], where known")
+        float | None,
+        typer.Option("--wind-up", help="Elastic wind-up in the lost motion, both ways together [rad; m], where known"),
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for result.json and report.html")] = None,
     json: Json = False,
     reading: Reading = AS_IT_IS,
     translation: Translation = False,
 ) -> None:
-    """Read the play of a slow record without dynamics: where friction carries the link, a force pulls it, or a torque loads it."""
+    """Read the play of a slow record without dynamics: where friction carries the link, a force pulls it, or a torque loads
+    it."""
     from .commands import lost_motion as command
 
     command.run(record, wind_up=wind_up, out=out, as_json=json, reading=reading, translational=translation)

@@ -53,7 +53,7 @@ def files(tmp_path):
 
 WORDS = {
     "fit": ["r.csv"], "compare": ["m.toml", "r.csv"], "diagnose": ["r.csv"], "refine": ["r.csv"], "skeleton": ["r.csv"],
-    "chaos": ["r.csv"], "look": ["r.csv"], "simulate": ["m.toml", "--out", "s.csv"],
+    "chaos": ["r.csv"], "look": ["r.csv"], "lost-motion": ["r.csv"], "simulate": ["m.toml", "--out", "s.csv"],
 }  # fmt: skip
 
 

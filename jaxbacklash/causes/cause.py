@@ -19,7 +19,8 @@ class Cause(Shown):
 
     Attributes
     ----------
-    name : what kind of cause: ``delay``, ``clock``, ``scale``, ``sign``, ``inertia``, ``held_samples``, ``held_start``, ``step``
+    name : what kind of cause: ``delay``, ``clock``, ``scale``, ``sign``, ``inertia``, ``held_samples``, ``held_start``, ``step``,
+        ``slow``
     channel : the channel that it is about, empty where it is about all
     size : how large it is, None where it has no size (a turned sign)
     stderr : standard error of the size, None where that cannot be told

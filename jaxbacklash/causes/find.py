@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
@@ -14,6 +15,7 @@ from ..fitting.fit import ABSOLUTE
 from ..fitting.result import Fit
 from ..fitting.search import silent
 from ..parameters import values, with_values
+from ..quasistatic import said_of, slow_reading
 from ..records import Record
 from ..regression.equation_error import Start
 from ..shooting.information import inverse_information
@@ -77,6 +79,10 @@ def find_causes(fit: Fit, progress: Callable[[str, float], None] = silent) -> li
     if fit.problem is None or fit.unknowns is None or not beyond_chance(fit) or fit.records[0].kind == "transmitted":
         return []
     progress("looking for causes in the record", 0.87)
+    slow = slow_reading(fit.records[0], translational=fit.translational) if len(fit.records) == 1 else None
+    if slow is not None:
+        return [Cause("slow", fit.records[0].observed_name, None, None, "1", fit.score.rms, float("nan"), 0.0, said_of(slow),
+                      f"jaxbacklash lost-motion {shlex.quote(fit.records[0].path or 'RECORD')}", certain=False)]  # fmt: skip
     bench = Bench(fit)
     found: list[Cause] = []
     # The surest first: what shows in the samples, then what is large, then what takes the fitted trajectory to see.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import json
 import shlex
@@ -12,6 +13,7 @@ import numpy as np
 
 from .. import __version__
 from ..errors import NoAnswer
+from ..quasistatic import said_of, slow_reading
 from ..records.description import ColumnFacts, Description, describe
 from .reading import Reading
 
@@ -21,7 +23,7 @@ WIDTH = 48
 
 def run(path: Path, *, out: Path | None, as_json: bool, reading: Reading) -> None:
     """Look, print; draw every column when a folder is given."""
-    found = describe(path, reading.options(), typed=reading.typed())
+    found = _slowly(describe(path, reading.options(), typed=reading.typed()))
     result = found.as_json() | {"command_line": shlex.join(["jaxbacklash", *sys.argv[1:]]), "version": __version__}
     words = json.dumps(result, indent=2, allow_nan=False) + "\n"
     folder = None
@@ -43,6 +45,16 @@ def run(path: Path, *, out: Path | None, as_json: bool, reading: Reading) -> Non
         raise NoAnswer(f"{path}: no column of numbers that change, so that there is nothing to fit")
 
 
+def _slowly(found: Description) -> Description:
+    """The same with the command for slow records, where it is one."""
+    slow = None if found.record is None else slow_reading(found.record)
+    if slow is None:
+        return found
+    command = found.command.replace("jaxbacklash fit", "jaxbacklash lost-motion", 1)
+    kind = "drive" if slow.way == "loop" else found.kind
+    return dataclasses.replace(found, notes=(*found.notes, said_of(slow)), command=command, kind=kind)
+
+
 def text(found: Description) -> str:
     """What a person reads."""
     table = found.table
@@ -58,6 +70,7 @@ def text(found: Description) -> str:
     kind = {
         "base_motion": "a record of base motion", "force": "a force-driven record", "free_decay": "a free decay",
         "transmitted": "base motion with the transmitted force", "series": "a series of one channel",
+        "drive": "a slow loop of torque over angle",
     }.get(found.kind or "", "no record that can be fitted as it stands")  # fmt: skip
     ready = found.record is not None or found.kind == "series"
     lines += ["", f"it seems to be {kind}"]

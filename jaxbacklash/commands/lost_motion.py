@@ -10,7 +10,7 @@ from pathlib import Path
 
 from .. import __version__
 from ..errors import BadInput, NoAnswer
-from ..quasistatic import Condition, lost_motion
+from ..quasistatic import Condition, LostMotion, lost_motion
 from ..quasistatic.result import verdict
 from ..records import Record
 from ..records.files import read_table
@@ -24,7 +24,9 @@ from .reading import Reading
 
 OTHER_NAMES = {"motor": "x", "link": "y", "torque": "T"}
 """Names that a drive's columns go by, and the channel that each is here."""
-NO_MATTER = frozenset({"gear", "sign", "absolute", "driven", "held-first", "clipped", "no-answer", "held", "stale", "stale-first"})
+NO_MATTER = frozenset(
+    {"gear", "sign", "absolute", "driven", "held-first", "clipped", "no-answer", "held", "stale", "stale-first"}
+)
 """Findings that would stop a fit: slow records are counted coarsely and rest for long, and what else is wrong is told here."""
 
 
@@ -35,6 +37,8 @@ def run(
 
     Raises
     ------
+    BadInput
+        An option is missing that would put the record right.
     NoAnswer
         The record does not show its play.
     """
@@ -43,12 +47,14 @@ def run(
     with progress(as_json) as tell:
         tell("reading both edges", 0.2)
         found = lost_motion(record, gear_ratio=reading.ratio, wind_up=wind_up, translational=translational)
+        _refuse_misread(path, found, reading)
         result = lost_motion_json(found, command_line=shlex.join(["jaxbacklash", *sys.argv[1:]]), version=__version__)
         words = json_text(result)
         if folder is not None:
             tell("drawing the report", 0.8)
             write_text(folder / "result.json", words)
-            from ..report.lost_motion_report import lost_motion_report  # pictures bring matplotlib, which a plain run need not wait for
+            # Pictures bring matplotlib, which a plain run need not wait for.
+            from ..report.lost_motion_report import lost_motion_report
 
             lost_motion_report(found, result, folder / "report.html")
     if as_json:
@@ -58,10 +64,15 @@ def run(
         if folder is not None:
             print(f"written: {folder}/result.json, report.html")
     if not found.applies:
-        failed = found.failed
-        if failed is not None and failed.way_out.startswith("--"):
-            raise BadInput(f"{path}: {failed.why}.", remedy=failed.way_out)
         raise NoAnswer(verdict(found))
+
+
+def _refuse_misread(path: Path, found: LostMotion, reading: Reading) -> None:
+    """Refuse a record that an option would put right, and name that."""
+    failed = found.failed
+    if failed is not None and failed.way_out.startswith("--"):
+        turned = failed.way_out == "--sign y" and "y" in reading.options().sign
+        raise BadInput(f"{path}: {failed.why}.", remedy="" if turned else failed.way_out)
 
 
 def read_slow(path: Path, reading: Reading) -> Record:

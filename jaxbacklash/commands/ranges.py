@@ -46,6 +46,7 @@ RANGES: dict[str, Range] = {
     "start": Range(-1e12, 1e12, "a time of the record [s]"),
     "stop": Range(-1e12, 1e12, "a time of the record [s]"),
     "port": Range(0, 65_535, "a port of this machine, 0 for a free one"),
+    "wind_up": Range(0.0, 1e3, "an angle [rad] or a travel [m]"),
     "skip": Range(0, 10**9, "a number of lines"),
 }
 """By the name of the option, or by command and option where an option means something else in one command."""

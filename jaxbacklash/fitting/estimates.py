@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from ..parameters import specs, unit_text, values
+from ..quasistatic import slow_reading, why_not
 from ..records import Record
 from ..regression.force_loop import NOTHING
 from ..system import System
@@ -208,6 +209,10 @@ def _joint_reasons(
         why = f"contact shows{met}, but its standard error exceeds a fifth of its value"
         return {name: (UNDETERMINED, why) for name in (("stiffness", "backlash") if met else ("stiffness",))}
     if weak or (above == 0.0 and below == 0.0):
+        slow = slow_reading(records[0]) if len(records) == 1 else None
+        if slow is not None:
+            why = why_not(slow)
+            return {"backlash": (UNDETERMINED, why), "stiffness": (UNDETERMINED, why)}
         why = f"z never leaves the play: |z| stays below {reach:.4g} {length} and no contact shows"
         if above > 0.0 or below > 0.0:
             why = (

@@ -84,7 +84,9 @@ def _levels(ax: Axes, found: LostMotion) -> None:
 
 def _play(ax: Axes, found: LostMotion) -> None:
     around, whole = found.over_angle, found.parameters["lost_motion"]
-    assert around is not None and whole.value is not None and whole.ci95 is not None
+    assert around is not None
+    assert whole.value is not None
+    assert whole.ci95 is not None
     ax.errorbar(around.angle, around.width, yerr=2.0 * around.stderr, fmt="o", ms=3.5, lw=1.0, color=MEASURED)
     ax.axhline(whole.value, color=MODEL, lw=1.2)
     ax.axhspan(*whole.ci95, color=MODEL, alpha=0.2, lw=0)
@@ -98,6 +100,6 @@ def levels_sentence(found: LostMotion) -> str:
     """What to see in the picture."""
     over: dict[str, Any] = {"loop": "the torque", "pulled": "time"}
     return (
-        f"z over {over.get(found.way, 'the angle')}. Colour says at which edge of the play it is; the distance of the two is the lost "
-        "motion. What both have in common over the angle is the gear's error, not play."
+        f"z over {over.get(found.way, 'the angle')}. Colour says at which edge of the play it is; the distance of the two is the "
+        "lost motion. What both have in common over the angle is the gear's error, not play."
     )

@@ -1,4 +1,5 @@
-"""What depends on the angle, whichever way the joint goes: the gear's transmission error, an encoder off its centre, a wrong ratio.
+"""What depends on the angle, whichever way the joint goes: the gear's transmission error, an encoder off its centre, a wrong
+ratio.
 
 It is a free smooth function, a straight line with cubic splines, as fine as predicts passes that were left out, and waves of one
 turn and half a turn of motor and link where the motion covers them. It cancels in the play, which is what differs between the

@@ -63,14 +63,16 @@ def carried(
     found = crossing(few_t, few_x, few_y, least, drift, told)
     if found is None or not np.isfinite(found.left):
         return Reading("carried", (motionless, enough_passes(passes(x, least).count)), passes(x, least).count)
+    back = crossing(few_t, few_y, few_x, least, drift, told)
+    best = found.left
     notes: tuple[str, ...] = ()
     if found.width < 0.0 < found.slope and found.left < OTHER_WAY * found.plain:
-        y, few_y = 2.0 * x - y, 2.0 * few_x - few_y
-        found = crossing(few_t, few_x, few_y, least, drift, told) or found
-        notes = ("z goes with the drive's direction where a link that is carried lags: z is taken for x - y",)
-    back = crossing(few_t, few_y, few_x, least, drift, told)
-    turned = back is not None and back.left < OTHER_WAY * found.left and back.width > 0.0
-    if turned and back is not None:
+        # z goes with the direction: either it was taken the other way round, or the link is what drives.
+        other = crossing(few_t, few_x, 2.0 * few_x - few_y, least, drift, told)
+        if other is not None and (back is None or other.left < back.left):
+            found, y, back = other, 2.0 * x - y, None
+            notes = ("z goes with the drive's direction where a link that is carried lags: z is taken for x - y",)
+    if back is not None and back.width > 0.0 and back.left < (OTHER_WAY if found.width > 0.0 else 1.0) * best:
         return _read(t, y, x, back, least, counts, told, motionless, torque, ratio, notes, link_drives=True)
     return _read(t, x, y, found, least, counts, told, motionless, torque, ratio, notes, link_drives=False)
 
@@ -102,14 +104,15 @@ def _read(
     around = over_angle(z, -where.side, driver, parts, fits)
     noise = float(np.sqrt(np.average(fits.fit.left**2, weights=parts.size)))
     conditions = (
-        *first, no_lag(found, fits, float(t[1] - t[0])), clear_of_counts(width, low, high, max(counts), float(np.ptp(parts.mean(z)))),
+        *first, no_lag(found, fits, float(t[1] - t[0])),
+        clear_of_counts(width, low, high, max(counts), float(np.ptp(parts.mean(z)))),
         at_edges(noise, width),
         stays_put(driver, follower, way, min(width, found.travel)), at_one_edge(z, way, found, width),
     )  # fmt: skip
     extra = {name: (*fits.coefficient(name), fits.freedom) for name in fits.names if name == "torque"}
     return Reading(
-        "carried", conditions, count, width, stderr, (low, high), fits.freedom, np.where(used, -where.side, 0.0), _drift(slow, fits), noise,
-        around, errors_of(fits), *_bends(fits, parts, z, driver, where.side), fits, bool(notes),
+        "carried", conditions, count, width, stderr, (low, high), fits.freedom, np.where(used, -where.side, 0.0),
+        _drift(slow, fits), noise, around, errors_of(fits), *_bends(fits, parts, z, driver, where.side), fits, bool(notes),
         (*notes, *(("the link drives and the motor follows",) if link_drives else ())), extra,
     )  # fmt: skip
 

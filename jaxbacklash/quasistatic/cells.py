@@ -14,8 +14,8 @@ MOST_ROWS = 12_000
 
 @dataclass(frozen=True)
 class Cells:
-    """Which samples go together: ``order`` (M,) of the samples used, ``begins`` (R,) of each cell in it, ``size`` (R,), the ``group``
-    (R,) that the cell's rows err with, and into how many ``parts`` what they are cut along was divided."""
+    """Which samples go together: ``order`` (M,) of the samples used, ``begins`` (R,) of each cell in it, ``size`` (R,), the
+    ``group`` (R,) that the cell's rows err with, and into how many ``parts`` what they are cut along was divided."""
 
     order: np.ndarray
     begins: np.ndarray

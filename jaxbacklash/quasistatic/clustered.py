@@ -1,7 +1,8 @@
 """Least squares whose rows come in groups that err together, and an interval from leaving each group out.
 
-The rows of one pass of a slow motion share whatever the pass had: creep, friction, a part of the gear's error. What is independent
-is the pass, so the interval is the jackknife's over passes, with the quantile of Student's t for as many as carry the answer.
+The rows of one pass of a slow motion share whatever the pass had: creep, friction, a part of the gear's error. What is
+independent is the pass, so the interval is the jackknife's over passes, with the quantile of Student's t for as many as carry
+the answer.
 """
 
 from __future__ import annotations
@@ -76,7 +77,8 @@ def clustered(rows: np.ndarray, answer: np.ndarray, weights: np.ndarray, group: 
     share = np.einsum("k,gkl,l->g", toward, normal, toward)
     return Clustered(
         values / scale, without / scale, answer - scaled @ values, float(np.average(missed, weights=weights)),
-        float(share.sum() ** 2 / np.sum(share**2)) * names.size / count, scaled * weights[:, None], inverse / np.outer(scale, scale) * scale,
+        float(share.sum() ** 2 / np.sum(share**2)) * names.size / count, scaled * weights[:, None],
+        inverse / scale[:, None],
     )  # fmt: skip
 
 
@@ -87,8 +89,8 @@ def quantile(freedom: float) -> float:
 
 @dataclass(frozen=True)
 class Leaning:
-    """The first coefficient, and another that is ``likely`` near zero, known by the rows and by that together; ``influence`` (R,) of
-    the rows on the first."""
+    """The first coefficient, and another that is ``likely`` near zero, known by the rows and by that together; ``influence``
+    (R,) of the rows on the first."""
 
     value: float
     stderr: float

@@ -1,4 +1,5 @@
-"""How far the drive goes, after it turns round, before the link follows: the travel under which two levels explain the record best.
+"""How far the drive goes, after it turns round, before the link follows: the travel under which two levels explain the record
+best.
 
 Every travel on a grid is tried. For each, the play operator says where the link is carried and where it stands, and a straight
 least squares with two levels, a curve over the angle and a drift says how well that explains the link's motion.

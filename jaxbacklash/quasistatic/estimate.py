@@ -1,4 +1,5 @@
-"""`lost_motion`: the play of a slow record, without dynamics. Chooses the way of reading by the channels, and puts it into words."""
+"""`lost_motion`: the play of a slow record, without dynamics. Chooses the way of reading by the channels, and puts it into
+words."""
 
 from __future__ import annotations
 
@@ -30,15 +31,16 @@ def lost_motion(
 ) -> LostMotion:
     """The play of a slow record, from where z stands on either side, without any dynamics.
 
-    It reads three kinds of record: two positions of a link that friction carries (``x`` with ``z`` or ``y``; the torque ``T`` beside
-    them tells wind-up from play), a link that is pulled to and fro by a force known by its sign (``F`` of -1, 0 and 1, with ``z`` or
-    ``y``), and a loop of torque over angle (``T`` or ``F`` with ``z``). Where the record does not show its play, ``failed`` says why
-    and what to do.
+    It reads three kinds of record: two positions of a link that friction carries (``x`` with ``z`` or ``y``; the torque ``T``
+    beside them tells wind-up from play), a link that is pulled to and fro by a force known by its sign (``F`` of -1, 0 and 1,
+    with ``z`` or ``y``), and a loop of torque over angle (``T`` or ``F`` with ``z``). Where the record does not show its play,
+    ``failed`` says why and what to do.
 
     Parameters
     ----------
     record : from `read_record`, positions at the link: ``ratio=`` there divides the motor's
-    gear_ratio : turns of the motor for a turn of the link, which names the waves of the motor's turn; nothing is divided by it here
+    gear_ratio : turns of the motor for a turn of the link, which names the waves of the motor's turn; nothing is divided by it
+        here
     wind_up : elastic wind-up that is part of the lost motion, both ways together, where it is known [rad or m]
     translational : positions in m
 
@@ -108,8 +110,8 @@ def _read(record: Record, gear_ratio: float | None, angular: bool) -> Reading:
         return loop(t, torque, z)
     where = record.path or "the record"
     raise BadInput(
-        f"{where}: found the channels t, {', '.join(channels)}, wanted x with z or y (two positions), F with z or y (a pull by its "
-        "sign), or T with z (a loop of torque over angle)."
+        f"{where}: found the channels t, {', '.join(channels)}, wanted x with z or y (two positions), F with z or y (a pull by "
+        "its sign), or T with z (a loop of torque over angle)."
     )
 
 
@@ -129,11 +131,10 @@ def _others(read: Reading, translational: bool) -> dict[str, Value]:
     return found
 
 
-def _apart(
-    parameters: dict[str, Value], read: Reading, torque: np.ndarray, translational: bool
-) -> tuple[dict[str, Value], bool]:
+def _apart(parameters: dict[str, Value], read: Reading, torque: np.ndarray, translational: bool) -> tuple[dict[str, Value], bool]:
     """Play and wind-up apart, where the torque varies enough: the levels that are left at no torque are the play's."""
     soft, error, freedom = read.extra["torque"]
+    soft = abs(soft)  # load cells often show the opposite torque
     if soft <= WORTH * error or read.levels is None:
         warnings.warn("the torque varies too little on either side to tell wind-up from play", UserWarning, stacklevel=4)
         return parameters, False
@@ -143,7 +144,8 @@ def _apart(
     side = read.side
     middle = float(np.mean(torque[side > 0.0]) - np.mean(torque[side < 0.0]))
     play = parameters["backlash"]
-    assert play.value is not None and play.stderr is not None
+    assert play.value is not None
+    assert play.stderr is not None
     unit = play.unit
     turns = abs(soft * middle)
     whole = play.value + turns
@@ -156,10 +158,15 @@ def _apart(
 
 
 def _ratio_said(read: Reading, gear_ratio: float | None) -> tuple[str, ...]:
-    """What the record says of a ratio that was stated: a straight line of z over the angle is that, or an encoder off its centre."""
+    """What the record says of a ratio that was stated: a straight line of z over the angle is that, or an encoder off its
+    centre."""
     assert read.slope is not None
     slope, error = read.slope
     if abs(slope) < max(quantile(read.freedom) * error, SLANT):
         return ()
-    by_record = f"{1.0 + slope:.5g} times as far as x" if gear_ratio is None else f"as with a ratio of {gear_ratio / (1.0 + slope):.5g}"
-    return (f"the link goes {by_record}, by a ratio that is not exact or an encoder off its centre; the play is not touched by that",)
+    by_record = (
+        f"{1.0 + slope:.5g} times as far as x" if gear_ratio is None else f"as with a ratio of {gear_ratio / (1.0 + slope):.5g}"
+    )
+    return (
+        f"the link goes {by_record}, by a ratio that is not exact or an encoder off its centre; the play is not touched by that",
+    )

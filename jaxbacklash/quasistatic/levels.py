@@ -88,7 +88,9 @@ def levels(
     fit, curve = best
     freedom = max(1.0, fit.groups - 1.0 - first.shape[1] - slow.shape[1])
     if speed is None:
-        return Levels(2.0 * float(fit.values[0]), 2.0 * fit.stderr(), freedom, None, 0.0, False, np.inf, fit.influence(), fit, curve, names)
+        return Levels(
+            2.0 * float(fit.values[0]), 2.0 * fit.stderr(), freedom, None, 0.0, False, np.inf, fit.influence(), fit, curve, names
+        )
     basis = parts.mean(curve.rows(angle))
     lagged = np.concatenate([first, -parts.mean(speed)[:, None], slow, basis], axis=1)
     with_lag = clustered(lagged, z, weights, group)

@@ -1,8 +1,8 @@
 r"""A slow loop of torque over angle: play, the stiffness of either side, and friction as half the loop's width.
 
-Beyond the play, on side :math:`\sigma` and in direction s, z = z_0 + \sigma b/2 + (T - s T_f)/k_\sigma. That is a straight line in
-T for each branch of the loop, so all of it is one least squares; the play is what lies between the two lines where the torque,
-less the friction, is nothing.
+Beyond the play, on side :math:`\sigma` and in direction s, z = z_0 + \sigma b/2 + (T - s T_f)/k_\sigma. That is a straight
+line in T for each branch of the loop, so all of it is one least squares; the play is what lies between the two lines where the
+torque, less the friction, is nothing.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from .reading import Condition, Reading, rough_noise
 from .shows import clear_of_counts, enough_passes
 
 LIGHT = (0.12, 0.25)
-"""Torque, as a share of the largest on its side, from which on contact is taken for a straight line; the second is a check of that."""
+"""Torque, as a share of the largest on its side, from which on contact is taken for a straight line; the second is a check of
+that."""
 THIRD = 0.2
 """How large the third order of a branch may be against its first, at full load, as one standard deviation."""
 TURNED = 0.15
@@ -40,7 +41,9 @@ def loop(t: np.ndarray, torque: np.ndarray, z: np.ndarray) -> Reading:
     found = [_fit(t, torque, z, way, light, largest) for light in LIGHT]
     if found[0] is None:
         why = "edges not reached: too few samples lie beyond the play under load"
-        return Reading("loop", (both, Condition("both edges reached", False, both.found, why, "load it more, on both sides")), way.count)
+        return Reading(
+            "loop", (both, Condition("both edges reached", False, both.found, why, "load it more, on both sides")), way.count
+        )
     fit, play, used, side, slow, parts = found[0]
     width, freedom = 2.0 * play.value, max(1.0, fit.groups - 4.0)
     # What the lightest loads change, beyond what chance would, is what the shape of the branches leaves open.
@@ -108,7 +111,9 @@ def _of_branches(fit: Clustered, freedom: float) -> dict[str, tuple[float, float
         soft, error = float(fit.values[at]), float(np.sqrt(covariance[at, at]))
         if soft > 3.0 * error:
             found[name] = (1.0 / soft, error / soft**2, freedom)
-    pairs = [(float(fit.values[3 + i]), float(fit.values[1 + i]), covariance[np.ix_([3 + i, 1 + i], [3 + i, 1 + i])]) for i in (0, 1)]
+    pairs = [
+        (float(fit.values[3 + i]), float(fit.values[1 + i]), covariance[np.ix_([3 + i, 1 + i], [3 + i, 1 + i])]) for i in (0, 1)
+    ]
     each = []
     for loss, soft, both in pairs:
         if soft > 0.0:

@@ -56,20 +56,25 @@ def pulled(
     fits = levels(z, sign, angle, slow, parts, choice, speed=None, step=float(t[1] - t[0]))
     noise = float(np.sqrt(np.average(fits.fit.left**2, weights=parts.size)))
     counts = [count_of(z) or 0.0, *([count_of(x) or 0.0] if x is not None else [])]
-    stderr = float(np.hypot(fits.stderr, _counted(max(counts), max(noise, rough_noise(z[used])))))
+    moved = _still_moving(z, sign, number, share, long)
+    # What it has moved by of late it may move by again.
+    late = 2.0 * float(np.mean(moved)) if moved.size else 0.0
+    counted = _counted(max(counts), max(noise, rough_noise(z[used])))
+    stderr = float(np.sqrt(fits.stderr**2 + counted**2 + late**2))
     grown = stderr / max(fits.stderr, 1e-300)
     reach = grown * 0.5 * (fits.interval[1] - fits.interval[0])
     width = abs(fits.width)
     notes = ("z goes against the force: one of the two has the other sign",) if fits.width + reach < 0.0 else ()
     conditions = (
-        *first, _at_rest(z, sign, number, share, long, width),
+        *first, _at_rest(moved, width),
         clear_of_counts(width, width - reach, width + reach, max(counts)), at_edges(noise, width),
     )  # fmt: skip
     drift = slow @ fits.fit.values[1 : 1 + slow.shape[1]]
     return Reading(
         "pulled", conditions, count, width, stderr, (width - reach, width + reach), fits.freedom,
         np.where(used, np.sign(fits.width) * sign, 0.0), drift, noise,
-        over_angle(z, sign * np.sign(fits.width), angle, parts, fits) if moves else None, errors_of(fits), None, None, fits, notes,
+        over_angle(z, sign * np.sign(fits.width), angle, parts, fits) if moves else None, errors_of(fits), levels=fits,
+        notes=notes,
     )  # fmt: skip
 
 
@@ -81,23 +86,28 @@ def _both(signs: np.ndarray) -> Condition:
     return Condition("both edges reached", False, said, why, "pull the link both ways")
 
 
-def _at_rest(
-    z: np.ndarray, sign: np.ndarray, number: np.ndarray, share: np.ndarray, long: np.ndarray, width: float
-) -> Condition:
+def _still_moving(z: np.ndarray, sign: np.ndarray, number: np.ndarray, share: np.ndarray, long: np.ndarray) -> np.ndarray:
+    """How far each pull moves the link from its third quarter to its last, the way it pulls, (P,); empty where pulls are too
+    short."""
+    means = []
+    for begin in (0.5, 0.75):
+        inside = long[number] & (share >= begin) & (share < begin + 0.25)
+        samples = np.bincount(number[inside], minlength=long.size)
+        sums = np.bincount(number[inside], z[inside], minlength=long.size)
+        means.append(np.where(samples > 0, sums / np.maximum(samples, 1), np.nan)[long])
+    starts = np.searchsorted(number, np.flatnonzero(long))
+    moved = sign[starts] * (means[1] - means[0])
+    return moved[np.isfinite(moved)]
+
+
+def _at_rest(moved: np.ndarray, width: float) -> Condition:
     """Whether the link has come to rest before the force turns round."""
-    third, last = (
-        [float(np.mean(z[own])) for one in np.flatnonzero(long) if (own := (number == one) & (share >= begin) & (share < end)).any()]
-        for begin, end in ((0.5, 0.75), (0.75, 1.0))
-    )
-    if len(third) != len(last):
+    if moved.size == 0:
         return Condition("at rest before it is turned", None, "the pulls are too short to say")
-    signs = np.array([sign[np.argmax(number == one)] for one in np.flatnonzero(long)])[: len(last)]
-    moved = signs * (np.array(last) - np.array(third))
-    # A mean over pulls: one that was hardly noticed does not count as one that has not come to rest.
-    error = float(np.std(moved) / np.sqrt(moved.size))
-    share_moved = abs(float(np.mean(moved))) / max(width, 1e-300)
-    said = f"in the last half of a pull z still moves by {share_moved:.2g} of the lost motion"
-    if share_moved <= SETTLED or abs(float(np.mean(moved))) < 2.0 * error:
+    mean = abs(float(np.mean(moved)))
+    error = float(np.std(moved) / np.sqrt(moved.size))  # what was hardly noticed does not count as motion
+    said = f"in the last half of a pull z still moves by {mean / max(width, 1e-300):.2g} of the lost motion"
+    if mean <= SETTLED * width or mean < 2.0 * error:
         return Condition("at rest before it is turned", True, said)
     why = "edges not reached: the link is still on its way, or rings, when the force turns round"
     return Condition("at rest before it is turned", False, said, why, "pull longer each way")
@@ -107,4 +117,6 @@ def _counted(count: float, noise: float) -> float:
     """What counting shifts the width by where z rests within one count: noise of some size takes it away."""
     if count <= 0.0:
         return 0.0
-    return float(np.sqrt(2.0) * count * min(1.0 / np.sqrt(12.0), np.exp(-2.0 * (np.pi * noise / count) ** 2) / (np.pi * np.sqrt(2.0))))
+    return float(
+        np.sqrt(2.0) * count * min(1.0 / np.sqrt(12.0), np.exp(-2.0 * (np.pi * noise / count) ** 2) / (np.pi * np.sqrt(2.0)))
+    )

@@ -18,6 +18,7 @@ WAYS = {
     "pulled": "a link pulled both ways by a force known by its sign",
     "loop": "a slow loop of torque over angle",
 }
+PASSES = {"carried": "strokes", "pulled": "pulls", "loop": "half loops"}
 LABELS = {
     "backlash": "total play b", "lost_motion": "lost motion", "wind_up": "elastic wind-up", "stiffness": "contact stiffness k",
     "stiffness_up": "stiffness, upper side", "stiffness_down": "stiffness, lower side", "friction": "dry friction",
@@ -33,7 +34,8 @@ class LostMotion(Shown):
     ----------
     record : that was read
     way : ``"carried"``, ``"pulled"`` or ``"loop"``
-    parameters : by name, ``backlash`` (total play) and ``lost_motion`` always; ``stiffness``, ``friction`` and others where they show
+    parameters : by name, ``backlash`` (total play) and ``lost_motion`` always; ``stiffness``, ``friction`` and others where
+        they show
     conditions : what the reading rests on, each with what was found
     passes : strokes, pulls or half loops that stand behind it
     side : (N,) the edge that z is at, -1 or +1; 0 in between and where that is not known
@@ -123,8 +125,10 @@ def verdict(found: LostMotion) -> str:
         way = f" Way out: {'say ' if failed.way_out.startswith('--') else ''}{failed.way_out}." if failed.way_out else ""
         return f"The play does not show here: {failed.why}.{way}"
     b = found.parameters["backlash"]
-    assert b.value is not None and b.ci95 is not None
-    said = f"The total play is {b.value:.5g} {b.unit}, between {b.ci95[0]:.5g} and {b.ci95[1]:.5g} with 95 % certainty, by {found.passes} passes."
+    assert b.value is not None
+    assert b.ci95 is not None
+    between = f"between {b.ci95[0]:.5g} and {b.ci95[1]:.5g} with 95 % certainty, by {found.passes} {PASSES[found.way]}"
+    said = f"The total play is {b.value:.5g} {b.unit}, {between}."
     if found.includes_wind_up:
         said += " Elastic wind-up under the friction or the pull is part of it: this record cannot tell the two apart."
     return said

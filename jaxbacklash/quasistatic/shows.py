@@ -1,4 +1,5 @@
-"""Whether a slow record shows its play: the conditions of the reading, each with what was found, and the way out where it fails."""
+"""Whether a slow record shows its play: the conditions of the reading, each with what was found, and the way out where it
+fails."""
 
 from __future__ import annotations
 
@@ -10,12 +11,14 @@ from .play import Passes
 from .reading import Condition, rough_noise
 
 FEWEST = 4
-"""Passes that carry the link, in both directions together: fewer leave no way to tell a drift from a play, or how far they scatter."""
+"""Passes that carry the link, in both directions together: fewer leave no way to tell a drift from a play, or how far they
+scatter."""
 STILL, AT_EDGE, TOOK_LAG = 0.35, 0.5, 1.15
-"""Slope of the link against the drive while it crosses, up to which the link stands; scatter at an edge over half the lost motion;
-what a lag leaves over what play does, down to which the two are not told apart."""
+"""Slope of the link against the drive while it crosses, up to which the link stands; scatter at an edge over half the lost
+motion; what a lag leaves over what play does, down to which the two are not told apart."""
 DRAGGED, IN_STEP = 0.02, 0.98
-"""Share of the drive's way that a link which stands in its play may be dragged; correlation with the drive of one that is geared."""
+"""Share of the drive's way that a link which stands in its play may be dragged; correlation with the drive of one that is
+geared."""
 EARLY = 0.35
 """Share of the lost motion by which z may leave its edge before the drive turns."""
 OTHERWISE = 4.0
@@ -29,7 +32,7 @@ def follows(x: np.ndarray, y: np.ndarray, counts: tuple[float, ...], ratio: floa
     moved, drive = float(np.ptp(y)), float(np.ptp(x))
     still = max(3.0 * counts[1], 10.0 * rough_noise(y))
     found = f"the drive ranges over {drive:.3g}, the link over {moved:.3g}"
-    # A link that goes a little of the way, and in step, is geared otherwise than was said; one that stands may be dragged a little.
+    # A link that goes a little of the way, in step, is geared otherwise than was said; one that stands may be dragged a little.
     slope, together = moved / drive, float(abs(np.corrcoef(x, y)[0, 1])) if moved > 0.0 else 0.0
     geared = together > IN_STEP and (ratio is None or abs(slope / ratio**2 - 1.0) < 0.3)
     if moved > still and (slope > DRAGGED or geared):
@@ -43,7 +46,7 @@ def both_edges(sides: dict[float, int], found: Crossing, least: float) -> Condit
     said = f"carried up on {sides[1.0]} passes, down on {sides[-1.0]}"
     if min(sides.values()) > 0:
         return Condition("both edges reached", True, said)
-    why = "edges not reached: the link is carried one way only" if max(sides.values()) else "edges not reached: the link is carried on no pass"
+    why = f"edges not reached: the link is carried {'one way only' if max(sides.values()) else 'on no pass'}"
     return Condition("both edges reached", False, said, why, "move the drive to and fro by several times the play")
 
 
@@ -68,7 +71,9 @@ def gear(slope: float, ratio: float | None, link_drives: bool) -> Condition:
     if slope < 0.0 and abs(slope + 1.0) <= SLOPE:
         return Condition("gear ratio", False, said, "the two encoders count in opposite directions", "--sign y")
     inverse = ratio is not None and abs(true * ratio - 1.0) < 0.2
-    what = f"the ratio was given as 1/N: {ratio:g}" if inverse else "the gear's ratio is " + ("missing" if ratio is None else "wrong")
+    what = f"the gear's ratio is {'missing' if ratio is None else 'wrong'}"
+    if inverse:
+        what = f"the ratio was given as 1/N: {ratio:g}"
     return Condition("gear ratio", False, said, f"{what}; by the record it is {true:.4g}", f"--ratio {near:.6g}")
 
 
@@ -106,8 +111,8 @@ def no_lag(found: Crossing, fits: Levels, step: float) -> Condition:
     late = fits.lag is not None and not fits.lag_open and abs(fits.lag) > 3.0 * fits.lag_stderr
     if fits.interval[0] <= 0.0 < fits.interval[1] and late and fits.lag is not None and abs(fits.lag) > step:
         why = (
-            f"z goes with the speed, not with the direction: a lag of {fits.lag:.3g} s between the encoders, viscous wind-up, or a "
-            f"link moved by its inertia; beside it the play is less than {max(fits.interval[1], 0.0):.3g}"
+            f"z goes with the speed, not with the direction: a lag of {fits.lag:.3g} s between the encoders, viscous wind-up, or "
+            f"a link moved by its inertia; beside it the play is less than {max(fits.interval[1], 0.0):.3g}"
         )
         return Condition("play, not lag", False, said, why, "read both encoders at one moment, and move more slowly")
     if found.lagging > TOOK_LAG * found.left or fits.beside_lag > 0.0 or fits.interval[0] <= 0.0:

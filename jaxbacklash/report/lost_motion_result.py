@@ -10,7 +10,8 @@ from .result import SCHEMA, about_record, finite
 
 
 def lost_motion_json(found: LostMotion, *, command_line: str = "", version: str = "") -> dict[str, Any]:
-    """The whole result of ``lost-motion``: ``backlash`` and what else is told stand among ``parameters``, null with a ``why``."""
+    """The whole result of ``lost-motion``: ``backlash`` and ``lost_motion``, and all that is told among
+    ``parameters``, null with a ``why``."""
     result: dict[str, Any] = {
         "schema": SCHEMA,
         "command": "lost-motion",
@@ -18,12 +19,15 @@ def lost_motion_json(found: LostMotion, *, command_line: str = "", version: str 
         "version": version,
         "record": about_record(found.record),
         "way": found.way,
+        "backlash": found.parameters["backlash"].as_json(),
+        "lost_motion": found.parameters["lost_motion"].as_json(),
         "parameters": {name: value.as_json() | {"label": LABELS[name]} for name, value in found.parameters.items()},
         "includes_wind_up": found.includes_wind_up,
         "passes": found.passes,
         "noise": {} if found.noise is None else {"z": finite(found.noise)},
         "conditions": [
-            {"name": one.name, "holds": one.holds, "found": one.found} | ({"why": one.why, "way_out": one.way_out} if one.why else {})
+            {"name": one.name, "holds": one.holds, "found": one.found}
+            | ({"why": one.why, "way_out": one.way_out} if one.why else {})
             for one in found.conditions
         ],
         "transmission_error": {

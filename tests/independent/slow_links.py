@@ -1,7 +1,7 @@
 """Links that dry friction carries through a play, many at once, by a time-stepping scheme of their own: no code of the package.
 
-Moreau's scheme: in each step the contact acts implicitly, and Coulomb friction takes as much of the momentum as it can. The drive's
-motion is prescribed, or the link is pulled by a force.
+Moreau's scheme: in each step the contact acts implicitly, and Coulomb friction takes as much of the momentum as it can. The
+drive's motion is prescribed, or the link is pulled by a force.
 """
 
 from __future__ import annotations
@@ -51,8 +51,8 @@ def carried(
 
 
 def played(x: np.ndarray, half: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """The slow limit, by the definition of the play operator: a sum of links of ``weights`` (M,), each held within ``half`` (M,) of
-    the drive at x (N,); several make contact that begins little by little, as in a tendon."""
+    """The slow limit, by the definition of the play operator: a sum of links of ``weights`` (M,), each held within ``half``
+    (M,) of the drive at x (N,); several make contact that begins little by little, as in a tendon."""
     at = np.full(half.size, x[0])
     y = np.empty(x.size)
     for index, now in enumerate(x):
