@@ -157,7 +157,7 @@ def test_readme_and_command_line_agree():
     from jaxbacklash.cli import app
 
     commands = typer.main.get_command(app).commands
-    shown = re.findall(r"^(?:pip install \. && )?jaxbacklash (\w+)(.*)$", README, flags=re.MULTILINE)
+    shown = re.findall(r"^(?:pip install \. && )?jaxbacklash ([\w-]+)(.*)$", README, flags=re.MULTILINE)
     assert {name for name, _ in shown} == set(commands)
     for name, rest in shown:
         known = {option for parameter in commands[name].params for option in parameter.opts}

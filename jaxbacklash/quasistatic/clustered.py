@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 MOST_GROUPS = 120
 """Groups that are left out in turn; of more, neighbours are left out together, which only makes the interval more careful."""
@@ -84,7 +84,7 @@ def clustered(rows: np.ndarray, answer: np.ndarray, weights: np.ndarray, group: 
 
 def quantile(freedom: float) -> float:
     """The factor of a standard error in a 95 % interval, by Student's t."""
-    return float(student.ppf(0.975, max(1.0, freedom)))
+    return float(stdtrit(max(1.0, freedom), 0.975))
 
 
 @dataclass(frozen=True)
