@@ -7,6 +7,8 @@ import pytest
 
 from jaxbacklash import BadInput, chaos
 from jaxbacklash.timeseries import find_drift
+from jaxbacklash.timeseries.driven import Driven
+from jaxbacklash.timeseries.verdict import judge_driven
 from jaxbacklash.timeseries.analyse import LONGEST, _shortened
 
 from .independent.chaotic import HELD_BACK, HENON, KNOWN, LORENZ, NOT_CHAOTIC_HELD_BACK, ar2, torus, with_noise
@@ -155,3 +157,9 @@ def test_intervals_hold_the_truth_however_coarse_the_sampling():
             inside += found.interval[0] <= case.truth() <= found.interval[1]
     assert told >= 8
     assert inside >= told - 2
+
+
+def test_a_growth_is_told_as_a_factor_that_can_be_read():
+    found = Driven(-0.002, 0.001, (-0.004, 0.0), None, None, np.zeros(4), 0, 2000, 0.0, 1.0, None, None, (), ())
+    text = judge_driven(found, 0.01, "base motion").text
+    assert "over these 20 s a difference becomes 0.018 times as large, 0.0025 times to 0.14 times within one standard error" in text

@@ -9,6 +9,7 @@ from html.parser import HTMLParser
 import pytest
 from matplotlib.image import imread
 
+from jaxbacklash.report.facts import _sentence
 from jaxbacklash import BadInput
 from jaxbacklash.plot.drawing import on_page, svg_of, to_png_data_uri, to_svg
 from jaxbacklash.plot.models import error_by_stage
@@ -194,3 +195,8 @@ def test_page_in_a_browser(page, tmp_path):
         browse(used, tmp_path / name, flag, f"--screenshot={shot}")
         corner = imread(shot)[5, 5, :3].mean()
         assert corner > 0.9 if name == "light" else corner < 0.2
+
+
+def test_a_sentence_begins_large_and_a_symbol_stays_small():
+    assert _sentence("a torque is missing") == "A torque is missing."
+    assert _sentence("z does not repeat with the drive's cycles!") == "z does not repeat with the drive's cycles!"

@@ -71,7 +71,7 @@ def _periods(ax: Axes, period: np.ndarray, extent: tuple[float, float, float, fl
     image = ax.imshow(classes, cmap=ListedColormap(PERIOD_COLOURS), norm=BoundaryNorm(np.arange(-0.5, 9.5), 9), **_imaged(extent))
     bar = ax.figure.colorbar(image, ax=ax, location="top", shrink=0.9, aspect=30, ticks=range(9))
     bar.ax.set_xticklabels(["none", "chaos", *PERIOD_NAMES[2:8], f">{PERIODS}"], fontsize=7.0)
-    bar.set_label("periods of the drive in one of the motion", fontsize=8.0)
+    bar.set_label("drive periods until the motion repeats", fontsize=8.0)
 
 
 @picture

@@ -62,7 +62,7 @@ def measured_against_model(
         _zoom(upper, t[stretch], measured[stretch], model[stretch], local, noise)
         _left_over(lower, t[stretch], (measured - model)[stretch], local, noise, unit)
         missed = _how_far(misfit[index], noise, label, unit)
-        upper.set_title(f"{'AB'[place]}, {name}: {missed}, window from {t[edges[index]]:.5g} s", loc="left")
+        upper.set_title(f"{'AB'[place]}, {name}: {missed},\nwindow from {t[edges[index]]:.5g} s", loc="left")
         upper.tick_params(labelbottom=False)
         lower.set_xlim(upper.get_xlim())
         if place == 0:

@@ -168,4 +168,5 @@ def _method(name: str) -> str:
 
 def _sentence(text: Any) -> str:
     text = str(text).strip()
-    return text[:1].upper() + text[1:] + ("" if text.endswith((".", "!", "?")) else ".")
+    symbol = len(text.split(" ")[0]) == 1 and text[:1] in "txyzb"  # z is not Z
+    return (text[:1] if symbol else text[:1].upper()) + text[1:] + ("" if text.endswith((".", "!", "?")) else ".")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from .drift import Drift
@@ -149,6 +150,12 @@ def judge_driven(found: Driven, dt: float, drive: str) -> Verdict:
         return Verdict("regular", f"{same} come together, {fact}. {only}")
     return Verdict(
         "undecided",
-        f"{same} neither clearly separate nor clearly come together: over these {seconds:.3g} s a difference changes by about "
-        f"e^{found.value * found.samples:.2g}, with an error of e^{found.stderr * found.samples:.2g}. {only}",
+        f"{same} neither clearly separate nor clearly come together: over these {seconds:.3g} s a difference becomes "
+        f"{_times(found.value * found.samples)} as large, {_times((found.value - found.stderr) * found.samples)} to "
+        f"{_times((found.value + found.stderr) * found.samples)} within one standard error. {only}",
     )
+
+
+def _times(exponent: float) -> str:
+    """A factor of growth in words: ``0.01 times``, or ``e^40 times`` where nobody could read the number."""
+    return f"{math.exp(exponent):.2g} times" if abs(exponent) < 9.0 else f"e^{exponent:.0f} times"
