@@ -162,4 +162,6 @@ def test_intervals_hold_the_truth_however_coarse_the_sampling():
 def test_a_growth_is_told_as_a_factor_that_can_be_read():
     found = Driven(-0.002, 0.001, (-0.004, 0.0), None, None, np.zeros(4), 0, 2000, 0.0, 1.0, None, None, (), ())
     text = judge_driven(found, 0.01, "base motion").text
-    assert "over these 20 s a difference becomes 0.018 times as large, 0.0025 times to 0.14 times within one standard error" in text
+    assert (
+        "over these 20 s a difference becomes 0.018 times as large, 0.0025 times to 0.14 times within one standard error" in text
+    )

@@ -78,7 +78,8 @@ def section(name: str, row: list[str], numbers: dict[str, float | None] | None) 
     text.append(taken_for(name))
     picture = LAWS / f"{name}.svg"
     if picture.exists():
-        text.append(f'<figure class="law">\n{picture.read_text(encoding="utf-8")}</figure>\n')
+        opening = f'<figure class="law" tabindex="0" role="group" aria-label="Picture of {name}">'  # a keyboard can scroll it
+        text.append(f"{opening}\n{picture.read_text(encoding='utf-8')}</figure>\n")
     if numbers:
         text.append(f'<p class="law-numbers">{left_over(numbers)}</p>\n')
     return "\n".join(text)

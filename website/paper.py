@@ -57,7 +57,9 @@ def section(item: Item) -> str:
     drawing = page_of(item)
     if drawing is not None:
         svg = own_ids(to_svg(drawing), anchor, f"{item.name}: {item.title}")
-        text.append(f'<figure class="law paper">\n{svg}\n</figure>\n')
+        text.append(
+            f'<figure class="law paper" tabindex="0" role="group" aria-label="Picture of {item.name}">\n{svg}\n</figure>\n'
+        )
     if item.beside:
         text += ["| | paper | here | |", "|---|---|---|---|"]
         text += [f"| {row.what} | {cell(row.paper)} | {cell(row.ours)} | {row.unit} |" for row in item.beside]

@@ -96,7 +96,9 @@ class Ranking(Shown):
 
 def table(ranking: Ranking, most: int = 10) -> list[str]:
     """Lines of the ranking's best."""
-    lines = [f"  {'effect':<22} {'rms/noise with it':>18} {'evidence':>10}  (above 10 strong, below 0 against)"]
+    lines = [
+        f"  {'effect':<22} {'rms/noise with it':>18} {'evidence':>10}  (above 10, odds of 150 to 1: strong; below 0: against)"
+    ]
     for entry in ranking.entries[:most]:
         how = "refitted" if entry.refitted else "predicted"
         lines.append(f"  {entry.name:<22} {entry.rms_over_noise:>18.3g} {entry.evidence:>10.0f}  {how}")

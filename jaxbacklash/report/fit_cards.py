@@ -111,7 +111,7 @@ def of_ranking(found: Ranking) -> Card:
     rows = [[one.name, short(one.rms_over_noise), format_evidence(one.evidence), words] for one, words in zip(shown, how)]
     told = (
         f"The prediction error is {short(found.current)} times the noise now. Evidence allows for the parameters that an effect "
-        "brings: above 10 it is strong, below 0 it speaks against the effect."
+        "brings: above 10, odds of 150 to 1, it is strong, below 0 it speaks against the effect."
     )
     table = grid(["effect", "rms over noise with it", "evidence", "how"], rows)
     return Card("What one more effect would bring", (told,), (table,), (Picture("ranking", (found,)),))

@@ -32,6 +32,8 @@ class Figure:
     why: str = ""
 
 
+SCALE = "above 10, odds of 150 to 1, is strong, below 0 it speaks against the effect"
+"""What numbers of evidence mean."""
 SAYS = {
     "record": ("The record", "Every channel as it was measured, in SI units."),
     "fit": ("Measured against model", "All of it, the stretch that the model misses most, and a typical one."),
@@ -45,7 +47,7 @@ SAYS = {
     ),
     "missing_torque": ("The missing torque in time", "What would have to be added to the model for it to follow the record."),
     "torque_over": ("What the missing torque depends on", "Over the one or two coordinates that explain it best."),
-    "ranking": ("Which effect is missing", "The error with one effect added; above 10 evidence is strong, below 0 against it."),
+    "ranking": ("Which effect is missing", f"The error with one effect added; evidence {SCALE}."),
     "stages": ("The error falling", "Model by model on the way to this one; 1 means that noise alone is left."),
 }  # fmt: skip
 

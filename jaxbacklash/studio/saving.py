@@ -19,6 +19,7 @@ from ..report.refine_report import ranking_panel
 from ..report.refine_result import candidates_json
 from ..report.result import as_json, stage
 from ..whole_file import write_whole
+from .figures import SCALE
 from .tree import Model
 
 FILES = ("result.json", "model.toml", "report.html", "repeat.py")
@@ -100,7 +101,7 @@ def _panels(path: Sequence[Model]) -> list[Panel]:
     for number in sorted({0, len(path) - 1}):
         model = path[number]
         if model.ranking is not None and len(model.ranking):
-            said = "What the error would become with one effect added; evidence above 10 is strong, below 0 it speaks against it."
+            said = f"What the error would become with one effect added; evidence {SCALE}."
             panels.append(ranking_panel(f"What does it lack: {model.name}", said, svg_of(jb.plot.ranking, model.ranking), number))
         if model.findings is not None:
             panels += [
