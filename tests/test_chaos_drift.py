@@ -7,9 +7,9 @@ import pytest
 
 from jaxbacklash import BadInput, chaos
 from jaxbacklash.timeseries import find_drift
+from jaxbacklash.timeseries.analyse import LONGEST, _shortened
 from jaxbacklash.timeseries.driven import Driven
 from jaxbacklash.timeseries.verdict import judge_driven
-from jaxbacklash.timeseries.analyse import LONGEST, _shortened
 
 from .independent.chaotic import HELD_BACK, HENON, KNOWN, LORENZ, NOT_CHAOTIC_HELD_BACK, ar2, torus, with_noise
 

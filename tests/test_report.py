@@ -9,10 +9,10 @@ from html.parser import HTMLParser
 import pytest
 from matplotlib.image import imread
 
-from jaxbacklash.report.facts import _sentence
 from jaxbacklash import BadInput
 from jaxbacklash.plot.drawing import on_page, svg_of, to_png_data_uri, to_svg
 from jaxbacklash.plot.models import error_by_stage
+from jaxbacklash.report.facts import _sentence
 from jaxbacklash.report.html import Panel, render, write_report
 
 from .report_samples import HOSTILE, all_figures, motion, result, stages

@@ -30,8 +30,8 @@ def _ranking(stage: dict[str, Any], adequate: bool) -> list[Panel]:
         return []
     drawn = svg_of(candidate_ranking, stage["candidates"], current=stage["rms_over_noise"])
     sentence = (
-        "What the error would become with one effect added. Evidence allows for the parameters an effect brings: above 10, odds of "
-        "150 to 1, it is strong, below 0 it speaks against the effect."
+        "What the error would become with one effect added. Evidence allows for the parameters an effect brings: above 10, odds "
+        "of 150 to 1, it is strong, below 0 it speaks against the effect."
     )
     detail = (
         "Predicted from the sensitivities of the fitted model, at the best strength and shape of each effect; nothing was "

@@ -71,8 +71,8 @@ def _rankings(stages: list[dict[str, Any]], complete: bool) -> list[Panel]:
         if number + 1 < len(stages):
             sentence = (
                 f"What the error would become with one effect added to {have}; the first bar is the effect that was added. "
-                "Evidence allows for the parameters an effect brings: above 10, odds of 150 to 1, it is strong, below 0 it speaks "
-                "against the effect."
+                "Evidence allows for the parameters an effect brings: above 10, odds of 150 to 1, it is strong, below 0 it "
+                "speaks against the effect."
             )
         else:
             why = "no evidence is strong enough to add any"
