@@ -234,3 +234,19 @@ def test_intervals_hold_the_play():
         widths.append(0.5 * (high - low) / PLAY)
     assert 0.90 <= inside / 120 <= 1.0
     assert np.median(widths) < 0.1
+
+
+def test_means_in_cells_are_those_of_the_samples(monkeypatch):
+    from jaxbacklash.quasistatic import cells as module
+
+    monkeypatch.setattr(module, "AT_ONCE", 50)
+    draw = np.random.default_rng(8)
+    values, group = draw.standard_normal(1000), np.arange(1000) // 100
+    parts = module.cells(group, values, values > -1.0)
+
+    def function(v):
+        return np.stack([v, v**2], axis=1)
+
+    assert parts.mean_of(function, values) == pytest.approx(parts.mean(function(values)))
+    assert parts.size.sum() == np.count_nonzero(values > -1.0)
+    assert np.average(parts.mean(values), weights=parts.size) == pytest.approx(values[values > -1.0].mean())

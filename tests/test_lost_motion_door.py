@@ -118,4 +118,4 @@ def test_results_show_themselves():
     assert left.get_xlabel() == "x [rad]"
     assert right.get_ylabel() == "lost motion [rad]"
     still = jb.lost_motion(jb.Record(T, {"x": 0.005 * np.sin(T), "y": 1e-6 * played(np.sin(T), 0.1 * ONE, ONE)}))
-    assert "does not show" in svg_of(jb.plot.lost_motion, still)
+    assert "not counted" in svg_of(jb.plot.lost_motion, still)

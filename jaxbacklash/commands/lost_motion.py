@@ -25,9 +25,12 @@ from .reading import Reading
 OTHER_NAMES = {"motor": "x", "link": "y", "torque": "T"}
 """Names that a drive's columns go by, and the channel that each is here."""
 NO_MATTER = frozenset(
-    {"gear", "sign", "absolute", "driven", "held-first", "clipped", "no-answer", "held", "stale", "stale-first"}
-)
+    {"gear", "sign", "absolute", "driven", "held-first", "clipped", "no-answer", "held", "held-rows", "stale", "stale-first",
+     "time-unit"}
+)  # fmt: skip
 """Findings that would stop a fit: slow records are counted coarsely and rest for long, and what else is wrong is told here."""
+JUMPS = frozenset({"shift", "wrap"})
+"""Findings that z from one edge to the other looks like, in few samples."""
 
 
 def run(
@@ -82,12 +85,13 @@ def read_slow(path: Path, reading: Reading) -> Record:
     options = reading.options()
     table = read_table(path, options)
     own = {split_unit(name)[0].lower(): name for name in table.names}
-    taken = set(options.columns) | {channel for channel in ("x", "y", "z", "T") if channel in own}
+    taken = set(options.columns) | ({"x", "y", "z", "T"} & {split_unit(name)[0] for name in table.names})
     columns = dict(options.columns)
     for name, channel in OTHER_NAMES.items():
         if name in own and not taken & ({"y", "z"} if channel == "y" else {channel}):
             columns[channel] = own[name]
-    options = dataclasses.replace(options, columns=columns, accept=options.accept | NO_MATTER)
+    jumps = JUMPS if {"z", "F"} & (set(columns) | set(own.values())) else frozenset()
+    options = dataclasses.replace(options, columns=columns, accept=options.accept | NO_MATTER | jumps)
     try:
         return record_of(table, options, str(path))
     except BadInput:

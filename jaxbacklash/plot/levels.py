@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from matplotlib.axes import Axes
 
 from ..quasistatic import LostMotion
-from .drawing import Where, empty, ink, legend_above, panels, picture
+from .drawing import Where, ink, legend_above, panels, picture
 from .style import GAP, MEASURED, MEDIUM, MODEL, with_unit
 from .thinning import strided
 
@@ -40,8 +38,6 @@ def lost_motion(found: LostMotion, *, ax: Where = None) -> list[Axes]:
     >>> jb.plot.lost_motion(found).get_ylabel()
     'z, less drift [rad]'
     """
-    if found.side.size == 0:
-        return empty(ax, "The record does not show its play.")
     around = found.over_angle if found.applies else None
     axes = panels(ax, 1, 2 if around is not None and around.angle.size > 1 else 1, height=MEDIUM)
     _levels(axes[0], found)
@@ -58,16 +54,17 @@ def _levels(ax: Axes, found: LostMotion) -> None:
     z = channels["z"] if "z" in channels else channels["y"] - x if x is not None else channels["y"]
     if found.turned:
         z = -z
-    z = z - found.drift
+    if found.drift.size:
+        z = z - found.drift
     if found.way == "loop":
         across, label = channels.get("T", channels.get("F")), with_unit("torque", "N" if found.translational else "N m")
-    elif found.over_angle is not None and x is not None:
+    elif found.way == "carried" and x is not None:
         across, label = x, with_unit("x", found.unit)
     else:
         across, label = record.t, with_unit("t", "s")
     assert across is not None
     some = strided(z.size, MOST)
-    at = found.side[some]
+    at = found.side[some] if found.side.size else np.zeros(z[some].size)
     ax.plot(across[some][at == 0.0], z[some][at == 0.0], ".", color=GAP, ms=1.5, alpha=0.5, rasterized=True)
     ax.plot([], [], "o", color=GAP, ms=4.0, label="not counted")
     for side in (-1.0, 1.0):
@@ -98,8 +95,10 @@ def _play(ax: Axes, found: LostMotion) -> None:
 
 def levels_sentence(found: LostMotion) -> str:
     """What to see in the picture."""
-    over: dict[str, Any] = {"loop": "the torque", "pulled": "time"}
-    return (
-        f"z over {over.get(found.way, 'the angle')}. Colour says at which edge of the play it is; the distance of the two is the "
-        "lost motion. What both have in common over the angle is the gear's error, not play."
-    )
+    over = {"loop": "the torque", "pulled": "time", "carried": "the angle"}[found.way]
+    if not found.applies:
+        return f"z over {over}. No play is read from it, for the reason above."
+    if found.way == "loop":
+        return "z over the torque. Colour says on which side it is loaded; the play lies between the two, at no torque."
+    said = f"z over {over}. Colour says at which edge of the play it is; the distance of the two is the lost motion."
+    return said + (" What both have in common over the angle is the gear's error, not play." if found.over_angle else "")

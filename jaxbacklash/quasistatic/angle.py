@@ -53,6 +53,11 @@ class Curve:
             columns += [np.cos(turn), np.sin(turn)]
         return np.stack(columns, axis=1)
 
+    def at(self, angle: np.ndarray, coefficients: np.ndarray) -> np.ndarray:
+        """One function of the family, (N,), a part of the angles at a time."""
+        parts = np.array_split(angle, max(1, angle.size // 100_000))
+        return np.concatenate([self.rows(part) @ coefficients for part in parts])
+
     def wave_at(self, index: int) -> slice:
         """Where a wave's two columns stand."""
         first = 2 + (self.pieces + 1 if self.pieces else 0) + 2 * index

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 TO_A_PASS = 40
 """Cells to a pass, at most."""
+AT_ONCE = 100_000
+"""Samples that a function is evaluated at together."""
 MOST_ROWS = 12_000
 """Cells of all passes together."""
 
@@ -27,6 +30,18 @@ class Cells:
         """The mean of values (N,) or (N, K) in each cell."""
         sums = np.add.reduceat(values[self.order], self.begins, axis=0)
         return sums / (self.size if values.ndim == 1 else self.size[:, None])
+
+    def mean_of(self, function: Callable[[np.ndarray], np.ndarray], values: np.ndarray) -> np.ndarray:
+        """The mean in each cell of a function of values (N,), which makes (N, K) of them: a part of the samples at a time."""
+        ends = np.append(self.begins[1:], self.order.size)
+        whole, first = [], 0
+        while first < self.begins.size:
+            last = max(first + 1, int(np.searchsorted(ends, self.begins[first] + AT_ONCE, side="right")))
+            start = int(self.begins[first])
+            rows = function(values[self.order[start : ends[last - 1]]])
+            whole.append(np.add.reduceat(rows, self.begins[first:last] - start, axis=0))
+            first = last
+        return np.concatenate(whole) / self.size[:, None]
 
     @property
     def weights(self) -> np.ndarray:

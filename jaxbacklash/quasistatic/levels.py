@@ -78,7 +78,7 @@ def levels(
     names = ("half", *extra)
     best: tuple[Clustered, Curve] | None = None
     for curve in families:
-        basis = parts.mean(curve.rows(angle))
+        basis = parts.mean_of(curve.rows, angle)
         if 3 * (basis.shape[1] + first.shape[1] + slow.shape[1]) > z.size:
             continue
         tried = clustered(np.concatenate([first, slow, basis], axis=1), z, weights, group)
@@ -91,7 +91,7 @@ def levels(
         return Levels(
             2.0 * float(fit.values[0]), 2.0 * fit.stderr(), freedom, None, 0.0, False, np.inf, fit.influence(), fit, curve, names
         )
-    basis = parts.mean(curve.rows(angle))
+    basis = parts.mean_of(curve.rows, angle)
     lagged = np.concatenate([first, -parts.mean(speed)[:, None], slow, basis], axis=1)
     with_lag = clustered(lagged, z, weights, group)
     at = first.shape[1]

@@ -56,7 +56,8 @@ def pulled(
     fits = levels(z, sign, angle, slow, parts, choice, speed=None, step=float(t[1] - t[0]))
     noise = float(np.sqrt(np.average(fits.fit.left**2, weights=parts.size)))
     counts = [count_of(z) or 0.0, *([count_of(x) or 0.0] if x is not None else [])]
-    moved = _still_moving(z, sign, number, share, long)
+    drift = slow @ fits.fit.values[1 : 1 + slow.shape[1]]
+    moved = _still_moving(z - drift - fits.curve.at(angle, fits.of_curve()), sign, number, share, long)
     # What it has moved by of late it may move by again.
     late = 2.0 * float(np.mean(moved)) if moved.size else 0.0
     counted = _counted(max(counts), max(noise, rough_noise(z[used])))
@@ -69,7 +70,6 @@ def pulled(
         *first, _at_rest(moved, width),
         clear_of_counts(width, width - reach, width + reach, max(counts)), at_edges(noise, width),
     )  # fmt: skip
-    drift = slow @ fits.fit.values[1 : 1 + slow.shape[1]]
     return Reading(
         "pulled", conditions, count, width, stderr, (width - reach, width + reach), fits.freedom,
         np.where(used, np.sign(fits.width) * sign, 0.0), drift, noise,

@@ -23,8 +23,8 @@ EARLY = 0.35
 """Share of the lost motion by which z may leave its edge before the drive turns."""
 OTHERWISE = 4.0
 """How far z goes, in bounds of the play, from which on something else must move it."""
-SLOPE = 0.1
-"""How far the link's slope against the drive may be from 1."""
+SLOPE = 0.25
+"""How far the link's slope against the drive may be from 1: the play, at one position of the drive, is not touched by it."""
 
 
 def follows(x: np.ndarray, y: np.ndarray, counts: tuple[float, ...], ratio: float | None) -> Condition:
