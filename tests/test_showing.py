@@ -13,6 +13,7 @@ from jaxbacklash.dynamics import Attractor, Basins, Exponents
 from jaxbacklash.dynamics.sections import Section
 from jaxbacklash.report.cards import html, table
 from jaxbacklash.second_opinion import CrossCheck
+from jaxbacklash.showing import Shown
 
 from . import made_up
 from .test_package import fresh
@@ -218,6 +219,23 @@ def test_what_is_missing_as_frames():
     assert over.torque.dims == ("y", "z")
     np.testing.assert_array_equal(over.torque.values.ravel(), surface.table)
     np.testing.assert_array_equal(over.z, surface.knots[1])
+
+
+def test_every_result_gives_its_numbers():
+    results = [*Shown.__subclasses__()]
+    assert len(results) > 15
+    for one in results:
+        results += one.__subclasses__()
+    assert [one.__name__ for one in results if not hasattr(one, "to_dataframe") and not hasattr(one, "to_dataset")] == []
+
+
+def test_a_cause_as_a_frame():
+    lag = jb.Cause("delay", "z", 0.004, 1e-5, "s", 12.9, 1.02, 800.0, "z lags", "--delay z=0.004", parameters={"damping": None})
+    frame = lag.to_dataframe()
+    assert frame.loc["delay", ["channel", "size", "unit"]].to_list() == ["z", 0.004, "s"]
+    assert frame.loc["delay", ["rms_over_noise", "rms_over_noise_without"]].to_list() == [12.9, 1.02]
+    assert frame.damping.isna().all()
+    assert frame.attrs["remedy"] == "--delay z=0.004"
 
 
 def test_motions_and_models_as_frames():

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..frames import dataframe
 from ..showing import Shown
 
 if TYPE_CHECKING:
@@ -59,6 +60,17 @@ class Cause(Shown):
         """What the joint comes to on the corrected record, in words."""
         known = ", ".join(f"{name} {value:.6g}" for name, value in self.parameters.items() if value is not None)
         return f"On the record without it: {known}" if known else ""
+
+    def to_dataframe(self) -> Any:
+        """One row, of the cause's name: channel, size with its standard error and unit, misfit over noise with it and without."""
+        return dataframe(
+            {
+                "cause": [self.name], "channel": [self.channel], "size": [self.size], "stderr": [self.stderr],
+                "unit": [self.unit], "rms_over_noise": [self.before], "rms_over_noise_without": [self.left],
+                **{name: [value] for name, value in self.parameters.items()},
+            },
+            "cause", remedy=self.remedy,
+        )  # fmt: skip
 
     def as_json(self) -> dict[str, Any]:
         """The cause's entry in result.json: plain numbers, None where there is none."""

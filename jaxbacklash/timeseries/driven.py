@@ -2,7 +2,7 @@
 
 The tangent of the measured law of motion (`force_surface`) is carried along the measured motion. The drive is the same for both
 motions and drops out of their difference, so it may sweep or never repeat. The exponent is conditional on that drive and of
-this record's length: another drive has another.
+this record's length: under another drive it differs.
 """
 
 from __future__ import annotations
