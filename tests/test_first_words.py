@@ -1,6 +1,7 @@
 """What a newcomer is told first: the version, the effects by name, the models, the paper, and how to cite."""
 
 import re
+import tomllib
 from pathlib import Path
 
 import jaxbacklash as jb
@@ -44,3 +45,9 @@ def test_citation_is_of_this_version():
     assert fields["version"] == jb.__version__
     assert fields["cff-version"] == "1.2.0"
     assert {"message", "title", "authors", "references"} <= fields.keys()
+
+
+def test_the_notebooks_extra_can_execute_what_it_converts():
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    names = {re.split(r"[>=\[]", one)[0] for one in extras["notebooks"]}
+    assert {"jupytext", "nbconvert", "ipykernel"} <= names  # what `jupytext --to ipynb --execute` asks for
