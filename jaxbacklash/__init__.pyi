@@ -9,9 +9,11 @@ from .criticism import Refinement as Refinement
 from .criticism import rank_effects as rank_effects
 from .criticism import refine as refine
 from .effects import AsymmetricGap as AsymmetricGap
+from .effects import Cogging as Cogging
 from .effects import Contact as Contact
 from .effects import CoulombGround as CoulombGround
 from .effects import CoulombJoint as CoulombJoint
+from .effects import CoulombMotor as CoulombMotor
 from .effects import CubicStiffness as CubicStiffness
 from .effects import Dahl as Dahl
 from .effects import Damper as Damper
@@ -20,12 +22,15 @@ from .effects import GapSpring as GapSpring
 from .effects import Gravity as Gravity
 from .effects import LearnedTorque as LearnedTorque
 from .effects import LinearGravity as LinearGravity
+from .effects import Motor as Motor
 from .effects import Preload as Preload
 from .effects import Spring as Spring
 from .errors import BadInput as BadInput
 from .errors import NoAnswer as NoAnswer
 from .excitation import Chirp as Chirp
 from .excitation import Harmonic as Harmonic
+from .excitation import HeldTorque as HeldTorque
+from .excitation import MotorTorque as MotorTorque
 from .excitation import Multisine as Multisine
 from .excitation import Rest as Rest
 from .excitation import Sampled as Sampled
@@ -45,6 +50,7 @@ from .models import base_motion_joint as base_motion_joint
 from .models import case_1 as case_1
 from .models import case_2 as case_2
 from .models import dimensionless as dimensionless
+from .models import drive as drive
 from .models import forced_oscillator as forced_oscillator
 from .models import two_link as two_link
 from .parameters import param as param

@@ -1,4 +1,4 @@
-"""What drives a joint: harmonic, chirp, multisine, stepped sine, or measured samples.
+"""What drives a joint: harmonic, chirp, multisine, stepped sine, or measured samples; and the torque of a drive's motor.
 
 Every excitation gives the `Drive` at a time; the default ``grid`` samples it at panel edges for the fixed-step solvers.
 """
@@ -167,3 +167,47 @@ class Panelled(Sampled):
 
     def grid(self, t0: Scalar, h: Scalar, panels: int) -> Drive:
         return Drive(self.x, self.dx, self.force, self.dforce)
+
+
+class MotorTorque(AbstractExcitation):
+    """A signal as the torque at the motor of a drive [N m], without a hold.
+
+    Examples
+    --------
+    >>> push = jb.MotorTorque(jb.Harmonic(0.2, 10.0))
+    >>> round(float(push.at(jnp.asarray(0.0)).torque), 3)
+    0.2
+    """
+
+    signal: AbstractSignal
+
+    def at(self, t: Scalar) -> Drive:
+        value, rate = jax.jvp(self.signal.signal, (t,), (jnp.ones_like(t),))
+        zero = jnp.zeros_like(value)
+        return Drive(zero, zero, zero, zero, value, rate)
+
+
+class HeldTorque(AbstractExcitation):
+    """Samples of the torque at the motor of a drive, each held until the next: what a controller puts out.
+
+    Attributes: ``t0`` time of the first sample and ``dt`` spacing [s]; ``torque`` (N,) [N m]. Before the first and after the last
+    sample those go on.
+
+    Examples
+    --------
+    >>> push = jb.HeldTorque(0.0, 0.001, np.array([0.1, 0.3, 0.2]))
+    >>> [float(push.at(jnp.asarray(t)).torque) for t in (0.0, 0.0009, 0.001)]
+    [0.1, 0.1, 0.3]
+    """
+
+    t0: Scalar
+    dt: Scalar
+    torque: Array
+    series: ClassVar[tuple[str, ...]] = ("torque",)
+
+    def at(self, t: Scalar) -> Drive:
+        # A millionth of a sample early is the sample: times are sums of panels.
+        k = jnp.floor((t - self.t0) / self.dt + 1e-6).astype(int)
+        value = jnp.asarray(self.torque)[jnp.clip(k, 0, self.torque.shape[0] - 1)]
+        zero = jnp.zeros_like(value)
+        return Drive(zero, zero, zero, zero, value)

@@ -26,12 +26,16 @@ class Drive(eqx.Module):
     """What drives the system at one moment: base motion ``x`` [rad], its rate ``dx``, and ``force`` on the link [N m].
 
     ``dforce`` is the rate of the force where it is known; without it the force is a straight line between panel edges.
+    ``torque`` at the motor of a drive [N m] and its rate ``dtorque``; without a rate the torque is held from one panel edge to
+    the next, as a controller holds it.
     """
 
     x: Scalar = 0.0
     dx: Scalar = 0.0
     force: Scalar = 0.0
     dforce: Scalar | None = None
+    torque: Scalar | None = None
+    dtorque: Scalar | None = None
 
 
 @dataclass(frozen=True)
@@ -54,7 +58,8 @@ class Instant:
     the speed must be taken, smoothed; ``drifted``, what the contact's stiffness is now, as a multiple of ``stiffness``;
     ``damping`` of the joint's damper [N m s/rad]; ``rubbed``, what dry friction is now, as a multiple of what its laws state;
     ``dseen``, rate of the motion that is measured, z' or y' [rad/s]; ``side`` of the play, -1, 0 or 1, where a solver has
-    settled it, None where it is the sign of the deflection.
+    settled it, None where it is the sign of the deflection; ``th``, ``dth`` motion of the motor of a drive [rad, rad/s], and
+    ``slip_th`` the direction in which it slides, as of the others.
     """
 
     t: Scalar
@@ -76,6 +81,9 @@ class Instant:
     rubbed: Scalar = 1.0
     dseen: Scalar = 0.0
     side: Scalar | None = None
+    th: Scalar = 0.0
+    dth: Scalar = 0.0
+    slip_th: Scalar | None = None
 
     def seen_by(self, state: tuple[Scalar, ...]) -> Instant:
         """The same moment with one effect's internal states filled in."""
@@ -101,8 +109,8 @@ class AbstractEffect(eqx.Module):
     """A physical effect: a law with parameters, neutral in everything it does not override.
 
     Class attributes: ``states`` names of internal states; ``reach`` how large these can become, where the law bounds what it
-    remembers; ``port`` where the torque acts, ``"joint"`` (between link and base, so it is part of the transmitted torque) or
-    ``"ground"``; ``family`` a name shared by laws that data often cannot tell apart; ``catalogued`` False keeps a law out of the
+    remembers; ``port`` where the torque acts, ``"joint"`` (between link and base, so it is part of the transmitted torque),
+    ``"ground"`` (between link and surroundings) or ``"motor"`` (on the motor of a drive); ``family`` a name shared by laws that data often cannot tell apart; ``catalogued`` False keeps a law out of the
     search for missing effects; ``slides`` True for dry friction, whose torque is ``dry`` against the direction of sliding at its
     port; ``beside`` True for friction in the joint that stands beside another law of it, where else there is one; ``absorbs``
     names of simpler laws that this one contains, so that it takes their place instead of standing beside them (parameters of one
@@ -159,7 +167,7 @@ class AbstractEffect(eqx.Module):
         return dataclasses.replace(self, **{n: null + factor * (getattr(self, n) - null) for n, null in nulls.items()})
 
     def torque(self, now: Instant) -> Scalar:
-        """Torque on the link [N m], dry friction included (in the direction ``now`` knows, else smoothed)."""
+        """Torque on the link, or at its port on the motor [N m], dry friction included (in the direction ``now`` knows, else smoothed)."""
         return jnp.zeros_like(now.y)
 
     def dry(self, now: Instant) -> Scalar:

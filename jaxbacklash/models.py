@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from .effects import Contact, Damper, GapSpring, Gravity, LinearGravity, Spring
+from .effects import Contact, Damper, GapSpring, Gravity, LinearGravity, Motor, Spring
 from .excitation import Harmonic
 from .system import System
 
@@ -38,6 +38,32 @@ def two_link(
     """
     weight = LinearGravity(gravity) if linearised else Gravity(gravity)
     return base_motion_joint(inertia, backlash, stiffness, damping).with_effects(weight)
+
+
+def drive(
+    motor_inertia: float, motor_damping: float, ratio: float, inertia: float, backlash: float, stiffness: float, damping: float,
+    *, observed: str = "motor link", width: float = 0.0,
+) -> System:  # fmt: skip
+    r"""A motor that turns a link through a gear and a joint with play: both move, the torque at the motor drives.
+
+    .. math::
+        J_m \ddot\theta = \tau - c_m \dot\theta + T / N, \qquad J \ddot y = -T, \qquad T = k \delta(z) + c \dot z,
+        \qquad z = y - \theta / N
+
+    motor_inertia [kg m^2] and motor_damping [N m s/rad] at the motor's shaft; ratio N, turns of the motor for a turn of the link;
+    the others as `base_motion_joint` has them, at the link. observed: which of motor and link have an encoder.
+
+    Examples
+    --------
+    >>> rig = jb.drive(4e-5, 9e-5, 50.0, inertia=0.05, backlash=0.0126, stiffness=860.0, damping=0.7)
+    >>> rig.state_names
+    ('y', 'dy', 'th', 'dth')
+    >>> motion = jb.simulate(rig, jb.MotorTorque(jb.Harmonic(0.1, 10.0)), duration=1.0)
+    >>> motion.observed.shape
+    (501, 2)
+    """
+    motor = Motor(motor_inertia, motor_damping, ratio)
+    return System(inertia, Contact(backlash, stiffness, width), Damper(damping), observed=observed, motor=motor)
 
 
 def linear_oscillator(inertia: float, stiffness: float, damping: float) -> System:

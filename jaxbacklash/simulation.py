@@ -7,6 +7,7 @@ method, another treatment of the switches.
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import equinox as eqx
@@ -46,7 +47,7 @@ class Trajectory(Shown, eqx.Module):
     """A simulated motion at N times.
 
     ``t`` (N,) [s]; ``states`` one (N,) array per name in ``System.state_names``; ``drive`` at the same times;
-    ``observed`` (N,) the measured channel without noise.
+    ``observed`` (N,) the measured channel without noise, of a drive (N, C) its encoders'.
     """
 
     t: Array
@@ -66,7 +67,7 @@ class Trajectory(Shown, eqx.Module):
 
     @property
     def x(self) -> Array:
-        """Base motion [rad], (N,)."""
+        """Base motion [rad], (N,); of a drive that of the motor behind its gear."""
         return jnp.broadcast_to(self.drive.x, self.t.shape)
 
     @property
@@ -100,6 +101,8 @@ def simulate(
     rate: float = 500.0,
     y0: float | None = None,
     dy0: float | None = None,
+    th0: float | None = None,
+    dth0: float | None = None,
     t0: float = 0.0,
     panels_per_sample: int | None = None,
     adaptive: bool = False,
@@ -113,7 +116,8 @@ def simulate(
     system : what moves; its ``contact.width`` matters only to the adaptive referee
     excitation : base motion or force; None: free decay
     duration, rate : [s], samples per second [Hz]
-    y0, dy0 : start of the link [rad, rad/s]; default: with the base, at its speed
+    y0, dy0 : start of the link [rad, rad/s]; default: with the base, at its speed; of a drive at rest
+    th0, dth0 : start of the motor of a drive [rad, rad/s]; default: where the link is, in the middle of the play
     t0 : start time [s]
     panels_per_sample : integration panels between samples (a panel is two Runge-Kutta steps); default: at most 1 ms
         each, at least 20 a period of the contact resonance, and none so long that the link goes right through the play in it
@@ -145,6 +149,9 @@ def simulate(
     y = jnp.asarray(start.x if y0 is None else float(y0), dtype=float)
     dy = jnp.asarray(start.dx if dy0 is None else float(dy0), dtype=float)
     state = tuple(jnp.asarray(s, dtype=float) for s in system.rest(jnp.asarray(float(t0)), y, dy, start))
+    if system.motor is not None:
+        given = (jnp.asarray(s if v is None else float(v), dtype=float) for s, v in zip(state[2:4], (th0, dth0)))
+        state = (*state[:2], *given, *state[4:])
     args = Driven(system, drive, jnp.asarray(float(t0)))
     if adaptive:
         times, states = _adaptive(args, state, jnp.asarray(1.0 / rate), samples, rtol, atol)
@@ -155,6 +162,8 @@ def simulate(
         if finer > every:
             times, states = _in_pieces(args, state, jnp.asarray(1.0 / rate), samples - 1, finer, system.switches)
     at = jax.vmap(drive.at)(times)
+    if system.motor is not None:
+        at = dataclasses.replace(at, **dict(zip(("x", "dx"), system.base(states, at.x, at.dx))))
     observed = jax.vmap(system.output)(times, states, at)
     return Trajectory(times, states, at, observed)
 
@@ -163,7 +172,7 @@ def default_panels(system: System, rate: float) -> int:
     """Panels between samples: none longer than 1 ms, at least 20 in a period of the contact resonance."""
     longest = 1e-3
     if system.contact is not None:
-        omega = float(np.sqrt(np.maximum(system.contact.stiffness, 1e-12) / system.inertia))
+        omega = float(np.sqrt(np.maximum(system.contact.stiffness, 1e-12) / system.reduced_inertia))
         longest = min(longest, 2.0 * np.pi / omega / 20.0)
     return max(1, int(np.ceil(1.0 / rate / longest - 1e-9)))
 
@@ -171,7 +180,8 @@ def default_panels(system: System, rate: float) -> int:
 def crossing_panels(system: System, drive: AbstractExcitation, times: Array, states: Any, rate: float, every: int) -> int:
     """Panels between samples, ``every`` at least, so that none holds both edges of the play: a panel finds the first it meets."""
     play = getattr(system.contact, "backlash", None)
-    speeds = states[1] - jax.vmap(drive.at)(times).dx
+    at = jax.vmap(drive.at)(times)
+    speeds = states[1] - system.base(states, at.x, at.dx)[1]
     if play is None or any(isinstance(v, jax.core.Tracer) for v in (play, speeds)):
         return every
     fastest = float(np.max(np.abs(speeds), initial=0.0, where=np.isfinite(speeds)))

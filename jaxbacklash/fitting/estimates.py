@@ -127,7 +127,8 @@ def contacts(record: Record, low: float, high: float) -> Contacts:
         level = NOTHING * float(np.max(np.abs(moved["T"])))
         share = [float(np.mean(sign * moved["T"] > level)) for sign in (1.0, -1.0)]
         return Contacts(share[0], share[1], 0.5 * float(np.ptp(moved["x"])))
-    z = moved["z"] if "z" in moved else moved["y"] - moved.get("x", 0.0)
+    z = record.relative
+    assert z is not None
     return Contacts(float(np.mean(z > high)), float(np.mean(z < low)), float(np.max(np.abs(z))))
 
 
@@ -199,6 +200,10 @@ def _joint_reasons(
     low, high = (float(e) for e in system.edges(0.0))
     assert system.contact is not None
     stiffness = float(system.contact.stiffness)
+    if all(r.relative is None and r.kind == "drive" for r in records):
+        clear = stiffness > CLEAR * stderr.get("stiffness", 0.0) and np.isfinite(stderr.get("stiffness", 0.0))
+        why = f"the torque does not show a contact: its stiffness is not clear of zero by {CLEAR:g} standard errors"
+        return {} if clear else {name: (UNDETERMINED, why) for name in ("backlash", "stiffness")}
     touch = [contacts(r, low, high) for r in records]
     above, below = max(c.above for c in touch), max(c.below for c in touch)
     reach = max(c.reach for c in touch)

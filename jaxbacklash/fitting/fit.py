@@ -19,7 +19,7 @@ from ..records.force import tell_way
 from ..records.relative_motion import check_answers
 from ..records.size import check_size
 from ..regression.equation_error import Start
-from ..shooting.lengths import PANELS, longest_panel, score_window, shooting_window
+from ..shooting.lengths import HELD_WINDOW, PANELS, longest_panel, score_window, shooting_window
 from ..shooting.windows import Layout, Windows, crossing_time, cut
 from ..system import System
 from .chance import explains
@@ -34,7 +34,7 @@ from .settings import EXPLAINED, SHORTEST
 from .setup import base_system, check_motion, free_names, make_problem
 from .stick_slip import sticks_and_slips
 
-ABSOLUTE = ("force", "transmitted")
+ABSOLUTE = ("force", "transmitted", "drive")
 """Kinds of record with a measured force, which need no inertia to tell a stiffness."""
 
 
@@ -126,7 +126,7 @@ def fit(
     clock["cut"] = time.perf_counter()
 
     found = search(system, windows, names, starts=starts, seed=seed, rough=start is None, progress=progress)
-    if not found.tied and system.has_play and not sticks_and_slips(system):
+    if not found.tied and system.has_play and system.motor is None and not sticks_and_slips(system):
         begun = system, windows, layout, group
         found, (system, windows, layout, group) = _harder(found, begun, chosen, names, window, seed, progress)
     clock["search"] = time.perf_counter()
@@ -219,17 +219,19 @@ def prepare(
     dt = records[0].dt
     window = score_window(dt, window)
     # Without the noise of a base motion a record says ten times more: its panels have to be finer.
-    finer = 1.0 if records[0].kind == "base_motion" else 2.0
+    finer = 1.0 if records[0].kind in ("base_motion", "drive") else 2.0
     longest = longest_panel(dt) / finer
     if system.contact is not None:
         # Thirty-two panels a period of the contact resonance keep the integration error a thousandth of an encoder's noise.
-        omega = np.sqrt(float(system.contact.stiffness) / float(system.inertia))
+        omega = np.sqrt(float(system.contact.stiffness) / float(system.reduced_inertia))
         period = 2.0 * np.pi / max(float(omega), 1e-9)
         # A first guess of the play may be far too small, so that there is an end to what it may ask for.
         play = float(getattr(system.contact, "backlash", 0.0))  # a plain spring has none
         crossing = min(crossing_time(r, play, period / 16.0) for r in records)
         longest = min(longest, max(min(period / (32.0 * finer), max(crossing, period / 256.0)), dt / PANELS))
-    windows, layout = cut(records, shooting_window(window), longest_panel=longest, least=intervals)
+    # Each sample of a held torque is an unknown of its window: the shorter windows are, the less work.
+    length = HELD_WINDOW * dt if records[0].kind == "drive" else shooting_window(window)
+    windows, layout = cut(records, length, longest_panel=longest, least=intervals)
     if system.observed == "T" and system.contact is not None:
         # Ties are of motion: the noise of a force counts as the motion that would make it in contact.
         windows = eqx.tree_at(lambda w: w.drop, windows, windows.drop * float(system.contact.stiffness))

@@ -30,14 +30,18 @@ def with_friction_widths(problem: Problem, widths: dict[str, float]) -> Problem:
             base[names.index(f"{law}.width")] = width
     # Smooth at both ports: so is friction that is only judged, and no other program is compiled.
     widened = eqx.tree_at(lambda p: p.base, problem, base)
-    return replace(widened, system=replace(problem.system, smoothed=("joint", "ground")))
+    return replace(widened, system=replace(problem.system, smoothed=("joint", "ground", "motor")))
 
 
 def sliding_speeds(problem: Problem) -> dict[str, float]:
     """Root mean square of the measured speed [rad/s] at which each law of dry friction slides, by its name."""
     w = problem.windows
     seen = np.any(np.asarray(w.weight) > 0.0, axis=1)
-    y, dy = np.asarray(w.starts)
-    speed = {"ground": dy, "joint": relative(w, y, dy)[1]}
+    y, dy, *motor = np.asarray(w.starts)
+    if problem.system.motor is not None:
+        ratio = float(problem.base[list(values(problem.system)).index("ratio")])
+        speed = {"ground": dy, "joint": dy - motor[1] / ratio, "motor": motor[1]}
+    else:
+        speed = {"ground": dy, "joint": relative(w, y, dy)[1]}
     laws = problem.system.effects.items()
     return {name: float(np.sqrt(np.mean(speed[law.port][seen] ** 2))) for name, law in laws if law.slides}

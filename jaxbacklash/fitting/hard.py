@@ -18,16 +18,16 @@ from .settings import SHORTEST, TAIL
 
 
 def contact_samples(system: System, dt: float) -> float:
-    r"""Samples (spacing ``dt`` [s]) in a contact: :math:`\pi \sqrt{J/k}` is half a period; infinite without a contact."""
+    r"""Samples (spacing ``dt`` [s]) in a contact: :math:`\pi \sqrt{J/k}` is half a period, J what swings on it; infinite without a contact."""
     if system.contact is None:
         return np.inf
     stiffness = float(system.contact.stiffness)
-    return float(np.pi * np.sqrt(float(system.inertia) / stiffness) / dt) if stiffness > 0.0 else np.inf
+    return float(np.pi * np.sqrt(float(system.reduced_inertia) / stiffness) / dt) if stiffness > 0.0 else np.inf
 
 
 def reach_of_sampling(system: System, dt: float) -> float:
     """Contact stiffness whose contacts last `SHORTEST` samples: the record does not tell a harder one."""
-    return float(system.inertia) * (np.pi / (SHORTEST * dt)) ** 2
+    return float(system.reduced_inertia) * (np.pi / (SHORTEST * dt)) ** 2
 
 
 def harder(system: System, records: Sequence[Record]) -> System:
@@ -56,8 +56,8 @@ def travel_in_contact(system: System, record: Record) -> float:
 
 
 def _relative(record: Record) -> np.ndarray:
-    channels = record.channels
-    return np.asarray(channels["z"] if "z" in channels else channels["y"] - channels.get("x", 0.0))
+    assert record.relative is not None
+    return record.relative
 
 
 def _range(z: np.ndarray) -> np.ndarray:

@@ -184,7 +184,9 @@ def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout
     ratio = np.full(groups, np.nan)
     ratio[usable] = np.sqrt(np.maximum(sums[0, usable], 0.0) / freedom[usable])
     samples = layout.samples[record]
-    flat = lambda a: np.asarray(a)[first : first + count].ravel()[:samples]  # noqa: E731
+    channels = problem.system.channels
+    main = len(channels) - 1  # of a drive with two encoders the link's
+    flat = lambda a: np.asarray(a)[first : first + count].ravel()[main :: len(channels)][:samples]  # noqa: E731
     t = float(np.asarray(w.t0)[first]) + layout.dt * np.arange(samples)
     return Score(
         rms=float(np.sqrt(np.sum(np.maximum(sums[0, usable], 0.0)) / np.sum(freedom[usable]))),
@@ -196,7 +198,7 @@ def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout
         predicted=flat(predicted.motion),
         residual=-flat(motion),
         length=layout.dt * layout.length * group,
-        observed=problem.system.observed,
+        observed=channels[main],
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import jax
@@ -10,12 +11,13 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..compiled import kept_jit
-from ..effects import Contact, Damper, Spring
+from ..effects import Contact, Damper, Motor, Spring
 from ..errors import BadInput
 from ..mechanics import AbstractEffect, Drive, canonical_name, catalogue, motion_of
 from ..parameters import free_specs, ravel, specs, values, with_values
 from ..records import Record
 from ..regression.along_motion import Motion, own_states
+from ..regression.drive_start import start_of_drive
 from ..regression.equation_error import Start, estimate
 from ..regression.force_loop import read_loop
 from ..shooting.problem import Problem, Unknowns
@@ -50,6 +52,8 @@ def base_system(
         raise BadInput(f"--inertia {inertia:g}: wanted a positive number of kg m^2 (kg for a translating mass)")
     if record.kind == "transmitted":
         return stick_slip_system(record, model, inertia, effects)
+    if record.kind == "drive":
+        return drive_system(record, model, inertia, effects)
     known = inertia
     if inertia is None and record.kind != "force":
         known = 1.0
@@ -62,6 +66,33 @@ def base_system(
         system = _system(start, record, model).with_effects(*start.effects)
     free = () if known is not None else ("inertia",)
     return system, free + free_names(system), start
+
+
+def drive_system(
+    record: Record, model: str, inertia: float | None, effects: Sequence[AbstractEffect | str] = ()
+) -> tuple[System, tuple[str, ...], Start]:
+    """`base_system` for a drive: all of its parameters are started from the record.
+
+    Raises
+    ------
+    BadInput
+        A model without a play, or a record whose encoders do not tell where to begin.
+    """
+    if model != "joint":
+        raise BadInput(f"--model {model}: a drive (torque with motor or link) is fitted as a joint with play; leave --model out")
+    if len(record.observed_names) < 2:
+        raise BadInput(
+            f"{record.path or 'the record'}: is a drive with an encoder on the {record.observed_names[0]} alone; fits of drives "
+            "begin from an encoder on motor and link so far; wanted both columns, or a model file to start from"
+        )
+    (motor_inertia, friction), start = start_of_drive(record)
+    if inertia is not None:
+        start = replace(start, inertia=inertia)
+    motor = Motor(motor_inertia, friction, record.ratio)
+    joint = System(start.inertia, Contact(start.backlash, start.stiffness), Damper(start.damping), motor=motor,
+                   observed=" ".join(record.observed_names))  # fmt: skip
+    system = add_effects(joint, effects)
+    return system, (() if inertia is not None else ("inertia",)) + free_names(system), start
 
 
 def stick_slip_system(
@@ -207,6 +238,9 @@ def first_guess(problem: Problem) -> Unknowns:
     if sticks_and_slips(system):
         theta = np.zeros(problem.directions.shape[1])
         return Unknowns(theta, np.asarray(march(problem, theta, w.coefficients)), np.asarray(w.coefficients))
+    if system.motor is not None:
+        zero = np.zeros(problem.directions.shape[1])
+        return Unknowns(zero, drive_at_rest(w, system, np.asarray(w.starts)), np.asarray(w.coefficients))
     y, dy = np.asarray(w.starts)
     if system.observed == "T":
         # A link that something holds, where its contact would carry the first force of the window.
@@ -216,6 +250,14 @@ def first_guess(problem: Problem) -> Unknowns:
     if len(starts) > 2 and system.observed != "T":
         starts = np.concatenate([starts[:2], followed(w, system, starts[0], starts[1])])
     return Unknowns(np.zeros(problem.directions.shape[1]), starts, np.asarray(w.coefficients))
+
+
+def drive_at_rest(w: Windows, system: System, starts: np.ndarray) -> np.ndarray:
+    """Starts (n, W) of a drive at these places and speeds (4, W): what laws remember is what they would of nothing before."""
+    if len(system.state_names) == system.mechanical:
+        return starts
+    full = system.rest(w.t0, starts[0], starts[1], Drive(0.0 * starts[0]))
+    return np.concatenate([starts, np.stack([np.broadcast_to(s, starts[0].shape) for s in full[system.mechanical :]])])
 
 
 def at_rest(w: Windows, system: System, y: np.ndarray, dy: np.ndarray) -> np.ndarray:

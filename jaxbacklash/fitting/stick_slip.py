@@ -43,7 +43,7 @@ def march(problem: Problem, theta: Array, coefficients: Array) -> Array:
     coefficients : (W, m) of the input's spline
     """
     w, system = problem.windows, problem.rebuild(theta)
-    local = local_coefficients(coefficients)
+    local = local_coefficients(problem.windows, coefficients)
     follows = jnp.concatenate([jnp.zeros(1), w.tie[:-1]])
     level = 10.0 / jnp.max(w.weight)
 

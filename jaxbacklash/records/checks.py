@@ -14,6 +14,8 @@ from .findings.quantities import degrees
 
 CHANNELS = ("x", "z", "y", "F", "T")
 """Base motion, relative motion, absolute motion, force on the link, transmitted force (the last two may be torques)."""
+DRIVE = ("torque", "motor", "link")
+"""Torque at the motor of a drive, and what its encoders show: the motor's shaft, and the link behind the gear."""
 
 MIN_SAMPLES = 64
 MIN_SECONDS = 0.5
@@ -120,13 +122,15 @@ def kind_of(names, extras, where: str) -> str:
     Returns
     -------
     str
-        "base_motion", "force", "free_decay" or "transmitted".
+        "base_motion", "force", "free_decay", "transmitted" or "drive".
 
     Raises
     ------
     BadInput
         When no experiment has these channels.
     """
+    if "torque" in names and ("motor" in names or "link" in names):
+        return "drive"
     moves = "z" in names or "y" in names
     if moves:
         return "base_motion" if "x" in names else "force" if "F" in names else "free_decay"

@@ -19,7 +19,8 @@ class Record:
         (see `time_axis.uniform_grid`).
     channels : dict of arrays of shape (N,)
         By name: x base motion, z = y - x relative motion, y absolute motion (rad or m), F force or torque on the link,
-        T force or torque the joint transmits (N or N m). With z and y both given, z is the one observed and y goes to
+        T force or torque the joint transmits (N or N m); of a drive torque at the motor (N m), motor and link its encoders (rad).
+        With z and y both given, z is the one observed and y goes to
         the extras.
     path : str
         The file as the user named it; refusals begin with it.
@@ -29,6 +30,10 @@ class Record:
         Channels (and "t") whose unit the user stated: a size unlikely for radians or seconds is then believed.
     findings : tuple of Finding
         What the reader found odd and warned of; a fit that misses something names these first.
+    ratio : float
+        Turns of the motor of a drive for a turn of the link; 1 for all other records.
+    per_kt : bool
+        True where the torque of a drive is its current, of a motor whose torque for an ampere nobody told.
 
     Raises
     ------
@@ -42,10 +47,13 @@ class Record:
     extras: dict[str, np.ndarray] = dataclasses.field(default_factory=dict)
     confirmed: frozenset[str] = frozenset()
     findings: tuple[Finding, ...] = ()
+    ratio: float = 1.0
+    per_kt: bool = False
 
     def __post_init__(self):
         where = self.path or "the record"
-        unknown = [name for name in self.channels if name not in checks.CHANNELS]
+        known = checks.DRIVE if "torque" in self.channels else checks.CHANNELS
+        unknown = [name for name in self.channels if name not in known]
         if unknown:
             wanted = f"{checks.listed(checks.CHANNELS)}, and other columns as extras"
             raise checks.wrong(where, f"the channel {unknown[0]}", wanted)
@@ -72,7 +80,8 @@ class Record:
         if self.input_name is not None:
             hint = "; if the base is held still give z alone (free decay)" if kind == "base_motion" else ""
             checks.moving(channels[self.input_name], self.input_name, "input", where, hint)
-        checks.moving(channels[self.observed_name], self.observed_name, "observed motion or force", where)
+        for name in self.observed_names:
+            checks.moving(channels[name], name, "observed motion or force", where)
         checks.plausible_angles(channels, self.confirmed, where)
 
     @property
@@ -92,18 +101,34 @@ class Record:
 
     @property
     def kind(self) -> str:
-        """The experiment: "base_motion", "force", "free_decay" or "transmitted"."""
+        """The experiment: "base_motion", "force", "free_decay", "transmitted" or "drive"."""
         return checks.kind_of(self.channels, self.extras, self.path)
 
     @property
     def input_name(self) -> str | None:
-        """The channel that drives: "x", "F", or None in a free decay."""
-        return {"base_motion": "x", "transmitted": "x", "force": "F", "free_decay": None}[self.kind]
+        """The channel that drives: "x", "F", "torque", or None in a free decay."""
+        return {"base_motion": "x", "transmitted": "x", "force": "F", "free_decay": None, "drive": "torque"}[self.kind]
 
     @property
     def observed_name(self) -> str:
-        """The channel a model must explain: "z", "y" or "T"."""
-        return next(name for name in ("z", "y", "T") if name in self.channels)
+        """The channel a model must explain: "z", "y" or "T"; of a drive the link's encoder, else the motor's."""
+        return next(name for name in ("z", "y", "T", "link", "motor") if name in self.channels)
+
+    @property
+    def observed_names(self) -> tuple[str, ...]:
+        """All channels a model must explain: several where a drive has an encoder on motor and link."""
+        both = tuple(name for name in ("motor", "link") if name in self.channels)
+        return both if self.kind == "drive" else (self.observed_name,)
+
+    @property
+    def relative(self) -> np.ndarray | None:
+        """Motion (N,) of the link against its base, of a drive against the motor behind its gear; None where it is not seen."""
+        seen = self.channels
+        if "z" in seen:
+            return seen["z"]
+        if "y" in seen:
+            return seen["y"] - seen.get("x", 0.0)
+        return seen["link"] - seen["motor"] / self.ratio if {"motor", "link"} <= set(seen) else None
 
     def between(self, t0: float, t1: float) -> "Record":
         """The samples with t0 <= t <= t1 (s), as a record; refused like any other when too little is left."""

@@ -69,7 +69,7 @@ def missing_force(fit: Fit) -> Latent:
 def _along(problem: Problem, unknowns: Unknowns) -> tuple[Any, tuple[Any, ...], Any]:
     """Times (W, M), the motion y, y', x, x' there, and the predicted force."""
     w, system = problem.windows, problem.rebuild(unknowns.theta)
-    local = local_coefficients(unknowns.coefficients)
+    local = local_coefficients(w, unknowns.coefficients)
     each = jax.vmap(trajectory, in_axes=(None, None, 0, 0, 0, 0))
     path = each(problem, unknowns.theta, unknowns.starts.T, local, w.t0, w.force)
     force = jax.vmap(jax.vmap(system.output))(path.times, path.states, Drive(path.drive.x, path.drive.dx, path.drive.force))

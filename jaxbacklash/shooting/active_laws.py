@@ -59,8 +59,9 @@ class ActiveLaws(System):  # type: ignore[misc]  # mypy takes parameters that mu
 
 
 def exerting(system: System) -> list[str]:
-    """The laws of a system that can exert a torque, in the order of its states."""
-    return [name for name in sorted(system.effects) if type(system.effects[name]).torque is not AbstractEffect.torque]
+    """The laws of a system that can exert a torque on its link, in the order of its states."""
+    laws = system.effects
+    return [n for n in sorted(laws) if laws[n].port != "motor" and type(laws[n]).torque is not AbstractEffect.torque]
 
 
 def active_laws(system: System, base: Array, directions: Array) -> tuple[Array, Array]:
@@ -87,13 +88,13 @@ def active_laws(system: System, base: Array, directions: Array) -> tuple[Array, 
 
 def rebuild_active(problem: Problem) -> Callable[[Array], System]:
     """As ``problem.rebuild``, for derivatives: a system of many laws asks only those that act, where that is faster."""
-    long = problem.system.slides or len(problem.system.state_names) > 2
+    long = problem.system.slides or len(problem.system.state_names) > problem.system.mechanical
     if not long or len(exerting(problem.system)) <= FEW:
         return problem.rebuild
     order, count = active_laws(problem.system, problem.base, problem.directions)
 
     def rebuild(theta: Array) -> System:
         s = problem.rebuild(theta)
-        return ActiveLaws(s.inertia, s.contact, s.damper, s.effects, s.observed, s.smoothed, order, count)
+        return ActiveLaws(s.inertia, s.contact, s.damper, s.effects, s.observed, s.smoothed, s.motor, order, count)
 
     return rebuild

@@ -67,9 +67,10 @@ def input_tangents(problem: Problem, theta: Array, local: Array) -> tuple[Array,
     return basis, jnp.swapaxes(by_lag, 1, 2)[..., None] * jax.jacfwd(lag)(theta)
 
 
-def local_coefficients(coefficients: Array) -> Array:
-    """Own coefficients and the first five of the next window, shape (W, m + 5)."""
-    if coefficients.shape[1] == 0:
+def local_coefficients(w: Windows, coefficients: Array) -> Array:
+    """Own coefficients and those that the window shares with the next, the first five of a quintic spline: (W, m + 5)."""
+    shared = w.basis.shape[2] - w.intervals
+    if shared == 0:
         return coefficients
     following = jnp.concatenate([coefficients[1:], jnp.zeros_like(coefficients[:1])])
-    return jnp.concatenate([coefficients, following[:, :DEGREE]], axis=1)
+    return jnp.concatenate([coefficients, following[:, :shared]], axis=1)

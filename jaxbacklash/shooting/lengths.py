@@ -11,6 +11,8 @@ from ..signals import SPAN, span
 
 SHOOTING_WINDOW = 0.05
 """Length of a shooting window [s]; eight samples where those last longer."""
+HELD_WINDOW = 16
+"""Samples of a shooting window where each of them has a torque of its own, held by a controller."""
 SCORE_WINDOW = 2.0 * SPAN
 """Length of the windows whose prediction error is quoted [s]; 32 samples where those last longer."""
 LONGEST_PANEL = 2.0e-3

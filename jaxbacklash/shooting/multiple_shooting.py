@@ -59,7 +59,7 @@ class Blocks(eqx.Module):
 
 
 class Prediction(eqx.Module):
-    """What one window predicts: ``motion`` (M,) measured channel, ``input`` (R,) spline as `Windows.shown`, ``end`` (n,)."""
+    """What one window predicts: ``motion`` (M,) measured channel, of C channels (M C,), ``input`` (R,) spline as `Windows.shown`, ``end`` (n,)."""
 
     motion: Array
     input: Array
@@ -102,12 +102,12 @@ def predict(problem: Problem, theta: Array, start: Array, local: Array, t0: Arra
     path = trajectory(problem, theta, start, local, t0, force)
     motion = jax.vmap(problem.rebuild(theta).output)(path.times, path.states, path.drive)
     measured = w.shown @ local if w.intervals else jnp.zeros((0,))
-    return Prediction(motion, measured, jnp.stack(path.end))
+    return Prediction(motion.ravel(), measured, jnp.stack(path.end))
 
 
 def predictions(problem: Problem, unknowns: Unknowns) -> Prediction:
     """Predictions of all windows, stacked on the leading axis."""
-    return _predict(problem, unknowns.theta, unknowns.starts, local_coefficients(unknowns.coefficients))[0]
+    return _predict(problem, unknowns.theta, unknowns.starts, local_coefficients(problem.windows, unknowns.coefficients))[0]
 
 
 def _predict(problem: Problem, theta: Array, starts: Array, local: Array) -> tuple[Prediction, Any, Array, Array]:
@@ -119,7 +119,7 @@ def _predict(problem: Problem, theta: Array, starts: Array, local: Array) -> tup
     at = jax.vmap(jax.vmap(lambda u, du, f: drive(w, u, du, f)))(u, du, w.force)
     samples = jax.tree.map(lambda v: v[:, : -1 : w.every], at)
     times = system.passed(w.t0[:, None] + w.panel * w.every * jnp.arange(w.samples), w.panel)[0]
-    motion = jax.vmap(jax.vmap(system.output))(times, kept, samples)
+    motion = jax.vmap(jax.vmap(system.output))(times, kept, samples).reshape(w.count, -1)
     measured = local @ w.shown.T if local.shape[1] else jnp.zeros((w.count, 0))
     return Prediction(motion, measured, end.T), states, u, du
 
@@ -147,7 +147,7 @@ def tie_weights(problem: Problem, states: int) -> Array:
     """How sharply each window's end is tied to the next window's start, (W, n) for ``states`` = n."""
     w = problem.windows
     # Other internal states have no common scale; a loose tie is enough for what they carry from window to window.
-    sharp = problem.tie * jnp.concatenate([w.drop, jnp.full(states - 2, w.drop[1])])
+    sharp = problem.tie * jnp.concatenate([w.drop, jnp.full(states - w.drop.shape[0], w.drop[1])])
     reach = jnp.asarray(problem.system.reach)
     kept = jnp.maximum(problem.tie, 1.0) ** 2 * KEPT / reach
     return w.tie[:, None] * jnp.where(jnp.isinf(reach), sharp, kept)
@@ -214,7 +214,7 @@ def linearise(problem: Problem, unknowns: Unknowns, shot: Shot) -> Blocks:
 def _windows(problem: Problem, unknowns: Unknowns) -> Window:
     starts = unknowns.starts.T
     following = jnp.concatenate([starts[1:], starts[:1]])
-    return Window(per_window(problem), starts, following, local_coefficients(unknowns.coefficients))
+    return Window(per_window(problem), starts, following, local_coefficients(problem.windows, unknowns.coefficients))
 
 
 def _bare(problem: Problem) -> Problem:

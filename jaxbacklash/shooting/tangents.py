@@ -24,7 +24,10 @@ BLOCK, TOGETHER = 400, 3
 
 
 def drive(w: Windows, u: Array, du: Array, force: Array) -> Drive:
-    """The drive at a panel edge: ``u``, ``du`` is the splined input (base motion or force) and its rate, ``force`` exact."""
+    """The drive at a panel edge: ``u``, ``du`` is the splined input (base motion, force or torque at a motor) and its rate,
+    ``force`` exact."""
+    if w.by_torque:
+        return Drive(jnp.zeros_like(u), jnp.zeros_like(u), force, None, u)
     if w.by_force:
         return Drive(jnp.zeros_like(u), jnp.zeros_like(u), force + u, du)
     return Drive(u, du, force)
@@ -96,7 +99,7 @@ def panel_matrices(
 
 
 def output_matrices(w: Windows, rebuild: Any, theta: Array, states: tuple[Array, ...], u: Array, du: Array) -> Array:
-    """Derivatives of the measured channel at the samples, (n + 2 + q, W, M): by state, by u and du, by theta."""
+    """Derivatives of the measured channels at the samples, (n + 2 + q, W, M C): by state, by u and du, by theta."""
     n, q = len(states), theta.shape[0]
     t = w.t0[:, None] + w.panel * w.every * jnp.arange(w.samples)
 
@@ -110,7 +113,8 @@ def output_matrices(w: Windows, rebuild: Any, theta: Array, states: tuple[Array,
 
     def push(e: Array) -> Array:
         moved = jnp.broadcast_to(e[: n + 2, None, None], own.shape)
-        return jax.jvp(lambda o, th: lanes(o, th, t, force), (own, theta), (moved, e[n + 2 :]))[1]
+        shown = jax.jvp(lambda o, th: lanes(o, th, t, force), (own, theta), (moved, e[n + 2 :]))[1]
+        return shown.reshape(*t.shape[:1], -1)
 
     return jax.vmap(push)(jnp.eye(n + 2 + q))
 
@@ -155,7 +159,7 @@ def rows(
     w: Windows, rebuild: Any, theta: Array, active: Array, states: tuple[Array, ...], u: Array, du: Array, basis: Array,
     lagged: Array | None,
 ) -> tuple[Array, Array]:  # fmt: skip
-    """Derivatives of the measured channel at the samples, (W, n + L + q, M), and of the end of every window, (W, n + L + q, n).
+    """Derivatives of the measured channels at the samples, (W, n + L + q, M C), and of the end of every window, (W, n + L + q, n).
 
     ``states`` (W, P) at panel edges, ``u`` and ``du`` (W, P+1); ``basis`` and ``lagged`` as `chain` takes them.
     """
@@ -163,11 +167,12 @@ def rows(
     along, end = chain(panel_matrices(w, rebuild, theta, active, states, u, du), basis, lagged)
     at = slice(None, -1, w.every)
     shown = output_matrices(w, rebuild, theta, tuple(s[:, :: w.every] for s in states), u[:, at], du[:, at])
-    by_state = along[:: w.every]  # (M, n, n + L + q, W)
+    channels = shown.shape[2] // w.samples
+    by_state = jnp.repeat(along[:: w.every], channels, axis=0)  # (M C, n, n + L + q, W)
     tangent = sum(shown[i].T[:, None] * by_state[:, i] for i in range(n))
-    by_input = sum(shown[n + e].T[:, None] * basis[e, at] for e in range(2))
+    by_input = sum(shown[n + e].T[:, None] * jnp.repeat(basis[e, at], channels, axis=0) for e in range(2))
     by_theta = jnp.transpose(shown[n + 2 :], (2, 0, 1))
     if lagged is not None:
         by_theta = by_theta + sum(shown[n + e].T[:, None] * jnp.transpose(lagged[e][:, at], (1, 2, 0)) for e in range(2))
-    tangent = tangent + jnp.concatenate([jnp.zeros((w.samples, n, w.count)), by_input, by_theta], axis=1)
+    tangent = tangent + jnp.concatenate([jnp.zeros((by_theta.shape[0], n, w.count)), by_input, by_theta], axis=1)
     return jnp.transpose(tangent, (2, 1, 0)), jnp.transpose(end, (2, 1, 0))

@@ -22,6 +22,7 @@ from ..records.force import force_edges, way
 from ..sharing import sharing
 from ..signals import DEGREE, NEGLIGIBLE, SPAN, choose_intervals, fit_spline, knots, noise_level, noise_of_differences
 from .chunks import CHUNK
+from .held import channel_noise, held_basis, torque_noise
 from .lengths import LONGEST_PANEL
 
 Array = Any
@@ -51,7 +52,10 @@ class Windows(eqx.Module):
     the splines and their derivatives at panel edges; ``starts`` (2, W) position and speed of the link from the smoothed data;
     ``drop`` (2,) how sharply ends tie to starts [1/rad, s/rad]; ``used`` how many windows, the first ones, hold
     data; ``told`` () how much of the variance that ``input_weight`` stands for the input shows, 1 but for one as good as exact,
-    which is given a little noise; ``by_force`` True when the spline is of the force.
+    which is given a little noise; ``by_force`` True when the spline is of the force, ``by_torque`` when it is of the torque at the motor
+    of a drive: then it is of degree 0, one coefficient a sample, for as long as the controller holds the torque. Of C channels
+    ``measured`` and ``weight`` are (W, M C), the channels of a sample together; ``starts`` and ``drop`` then have the motor's
+    position and speed behind those of the link.
     """
 
     t0: Array
@@ -71,6 +75,7 @@ class Windows(eqx.Module):
     told: Array
     every: int = eqx.field(static=True)
     by_force: bool = eqx.field(static=True)
+    by_torque: bool = eqx.field(static=True, default=False)
 
     @property
     def count(self) -> int:
@@ -78,7 +83,7 @@ class Windows(eqx.Module):
 
     @property
     def samples(self) -> int:
-        return self.measured.shape[1]
+        return (self.force.shape[1] - 1) // self.every
 
     @property
     def intervals(self) -> int:
@@ -90,15 +95,21 @@ class Windows(eqx.Module):
 
 
 class Layout(eqx.Module):
-    """Where each record sits among the windows, and what its noise is; plain numbers for reports."""
+    """Where each record sits among the windows, and what its noise is; plain numbers for reports.
+
+    ``channels`` names of the measured channels where there are several, as they lie in a sample; ``beside``, per record, the noise
+    of the other encoder of a drive that has two [rad].
+    """
 
     first: tuple[int, ...] = eqx.field(static=True)
     windows: tuple[int, ...] = eqx.field(static=True)
     samples: tuple[int, ...] = eqx.field(static=True)
-    noise: tuple[float, ...] = eqx.field(static=True)
+    noise: tuple[float, ...] = eqx.field(static=True)  # of the channel that `Record.observed_name` names
     input_noise: tuple[float, ...] = eqx.field(static=True)
     dt: float = eqx.field(static=True)
     length: int = eqx.field(static=True)
+    channels: tuple[str, ...] = eqx.field(static=True, default=())
+    beside: tuple[float, ...] = eqx.field(static=True, default=())
 
 
 def bucket(count: int) -> int:
@@ -148,7 +159,9 @@ def cut(
     driver = _driver(records)
     intervals = 0
     needed = 0
-    if driver is not None:
+    if driver == "torque":
+        intervals = length  # what the controller holds for each sample is a number of its own
+    elif driver is not None:
         needed = max(choose_intervals(r.t, r.channels[driver], length * dt) for r in records)
         # A step of four keeps the number of compiled shapes small.
         # No fewer than a window shares with the one before.
@@ -156,23 +169,28 @@ def cut(
         step = 4 if room >= LEAST_INTERVALS else 2
         intervals = -(-max(needed, room, least) // step) * step
         needed = next(n for n in range(needed, intervals + 1) if intervals % n == 0)
-    parts = [_cut_one(r, length, every, intervals, needed, driver) for r in records]
+    cut_one = _cut_drive if driver == "torque" else _cut_one
+    parts = [cut_one(r, length, every, intervals, needed, driver) for r in records]
     total = bucket(sum(p["measured"].shape[0] for p in parts))
     stacked: dict[str, np.ndarray] = {}
     for key in parts[0]:
-        if key in ("noise", "input_noise", "told"):
+        if key in ("noise", "input_noise", "told", "drop", "beside"):
             continue
         joined = np.concatenate([p[key] for p in parts])
         stacked[key] = np.pad(joined, [(0, total - joined.shape[0])] + [(0, 0)] * (joined.ndim - 1))
     counts = [p["measured"].shape[0] for p in parts]
     noise = tuple(float(p["noise"]) for p in parts)
     drop = 50.0 / np.mean(noise) * np.array([1.0, SPEED * max(length * dt, SPAN)])
+    if driver == "torque":
+        drop = np.mean([p["drop"] for p in parts], axis=0)
     starts = np.ascontiguousarray(stacked.pop("starts").T)
     panel = dt / every
     windows = Windows(
-        basis=_basis(length, every, intervals, panel), shown=_shown(length, intervals, needed), drop=drop,
+        basis=held_basis(length, every) if driver == "torque" else _basis(length, every, intervals, panel),
+        shown=np.eye(length) if driver == "torque" else _shown(length, intervals, needed), drop=drop,
         panel=np.asarray(panel), every=every, starts=starts,
-        used=np.asarray(sum(counts)), told=np.mean([p["told"] for p in parts]), by_force=driver == "F", **stacked,
+        used=np.asarray(sum(counts)), told=np.mean([p["told"] for p in parts]), by_force=driver == "F",
+        by_torque=driver == "torque", **stacked,
     )  # fmt: skip
     layout = Layout(
         first=tuple(int(v) for v in np.cumsum([0, *counts[:-1]])),
@@ -182,12 +200,17 @@ def cut(
         input_noise=tuple(float(p["input_noise"]) for p in parts),
         dt=dt,
         length=length,
+        channels=lead.observed_names if driver == "torque" else (),
+        beside=tuple(p["beside"] for p in parts if "beside" in p),
     )
     return windows, layout
 
 
 def _driver(records: Sequence[Record]) -> str | None:
-    """The measured input that gets a spline and shares in the misfit: base motion, or a force where it is smooth."""
+    """The measured input that gets a spline and shares in the misfit: base motion, a force where it is smooth, or the torque that
+    the controller of a drive holds."""
+    if records[0].kind == "drive":
+        return "torque"
     if "x" in records[0].channels:
         return "x"
     if "F" in records[0].channels and all(way(r) == "smooth" for r in records):
@@ -261,6 +284,52 @@ def _cut_one(record: Record, length: int, every: int, intervals: int, needed: in
     return part
 
 
+def _cut_drive(record: Record, length: int, every: int, *_: Any) -> dict[str, Any]:
+    """As `_cut_one`, of a drive: one or two encoders, and the torque that is held for each sample."""
+    dt, samples, channels = record.dt, record.samples, record.observed_names
+    count = -(-samples // length)
+    rows = count + 1
+    t0 = record.t[0] + length * dt * np.arange(rows)
+    noise = {name: channel_noise(record, name) for name in channels}
+    seen = np.stack([record.channels[name] for name in channels], axis=1)
+    weight = np.stack([np.full(samples, 1.0 / noise[name]) for name in channels], axis=1)
+    own = torque_noise(record)
+    torque = record.channels["torque"]
+    at_motor = noise.get("motor", record.ratio * noise.get("link", 0.0))
+    at_link = noise.get("link", at_motor / record.ratio)
+    sharp = np.array([1.0, SPEED * max(length * dt, SPAN)])
+    part: dict[str, Any] = {
+        "t0": t0,
+        "measured": _rows(seen.ravel(), rows, length * len(channels)),
+        "weight": _rows(weight.ravel(), rows, length * len(channels)),
+        "tie": np.concatenate([np.ones(count - 1), np.zeros(2)]),
+        "noise": noise[record.observed_name],
+        "input": _rows(torque, rows, length),
+        "input_weight": _rows(np.full(samples, 1.0 / own), rows, length),
+        "input_noise": own,
+        "told": 1.0,
+        "coefficients": _rows(torque, rows, length),
+        "force": np.zeros((rows, length * every + 1)),
+        "drop": 50.0 * np.concatenate([sharp / at_link, sharp / at_motor]),
+        "starts": _drive_starts(record, length * dt, t0),
+    }
+    if len(channels) > 1:
+        part["beside"] = noise["motor"]
+    return part
+
+
+def _drive_starts(record: Record, window: float, t0: np.ndarray) -> np.ndarray:
+    """Position and speed (W, 4) of link and motor where windows begin; one that has no encoder goes with the other."""
+    found = {}
+    for name in record.observed_names:
+        values = record.channels[name]
+        smooth = fit_spline(record.t, values, record.t[0], window / choose_intervals(record.t, values, window))
+        inside = np.clip(t0, record.t[0], record.t[-1])
+        found[name] = np.stack([smooth(inside), smooth(inside, 1)], axis=1)
+    link = found.get("link", found.get("motor", 0.0) / record.ratio)
+    return np.concatenate([link, found.get("motor", link * record.ratio)], axis=1)
+
+
 def observed_noise(record: Record) -> float:
     """Standard deviation of the noise of the measured channel, in its unit."""
     values = record.channels[record.observed_name]
@@ -275,13 +344,10 @@ def crossing_time(record: Record, play: float, span: float) -> float:
     A panel finds the first edge that the link meets, so that none may hold both. ``span`` [s] is the time over which the
     motion is differenced: short beside a period in contact, long enough that noise is no speed.
     """
-    channels = record.channels
-    if "z" in channels:
-        motion = channels["z"]
-    elif "y" in channels:
-        motion = channels["y"] - channels.get("x", 0.0)
-    else:  # of a link that is not seen, its base tells the pace
-        motion = channels["x"]
+    motion = record.relative
+    if motion is None:  # of a link that is not seen, its base tells the pace
+        motion = next(record.channels[name] for name in ("x", "motor", "link") if name in record.channels)
+        motion = motion / (record.ratio if "motor" in record.channels else 1.0)
     apart = min(max(1, int(span / record.dt)), record.samples - 1)
     fastest = float(np.max(np.abs(motion[apart:] - motion[:-apart]))) / (apart * record.dt)
     return play / fastest if play > 0.0 and fastest > 0.0 else np.inf

@@ -72,6 +72,10 @@ class Switching(Playing, Protocol):
 
     def kinks(self, t: Scalar, state: State, drive: Any, side: Scalar | None, ddz: Scalar) -> list[tuple[Scalar, Scalar]]: ...
 
+    def base(self, state: State, x: Scalar, dx: Scalar) -> tuple[Scalar, Scalar]: ...
+
+    def bend(self, rates: State, prescribed: Scalar) -> Scalar: ...
+
 
 def _add(state: State, rates: State, step: Scalar) -> State:
     return tuple(s + step * r for s, r in zip(state, rates))
@@ -155,6 +159,12 @@ def _moved(edge: tuple[Scalar, Scalar, Scalar], tau: Scalar) -> tuple[Scalar, Sc
     return place + tau * (speed + tau * half), speed + 2.0 * tau * half, half
 
 
+def base_ahead(system: Switching, state: State, base: Cubic) -> Cubic:
+    """How the joint's base goes on over a panel: as prescribed, or the motor of a drive straight on."""
+    x, dx = system.base(state, base.a, base.b)
+    return base if x is base.a else Cubic(x, dx, 0.0 * x, 0.0 * x)
+
+
 def _first_kink(kinks: list[tuple[Scalar, Scalar]], h: Scalar) -> Scalar:
     """First time in (0, h) at which one of some quantities with these values and rates is zero, or ``h`` if none ever is."""
     best = h
@@ -173,14 +183,15 @@ def advance(system: Switching, t: Scalar, state: State, drive_at: Any, base: Cub
     t : time at the start of the panel [s]
     state : ``(y, dy, ...)`` at the start
     drive_at : function of the time since the start of the panel, giving the drive that ``system.rates`` wants
-    base : base motion x over the panel [rad]
+    base : base motion x over the panel [rad], where that is prescribed
     h : length of the panel [s]
     """
-    edges = Edges.over(system, t, base, h)
-    z, dz = state[0] - base.a, state[1] - base.b
+    x, dx = system.base(state, base.a, base.b)
+    edges = Edges.over(system, t, base_ahead(system, state, base), h)
+    z, dz = state[0] - x, state[1] - dx
     side = edges.side(z, 0.0)
     first = system.rates(t, state, drive_at(0.0), side)
-    ddz = first[1] - 2.0 * base.c
+    ddz = first[1] - system.bend(first, 2.0 * base.c)
 
     crossing = edges.first_crossing(0.0, z, dz, ddz, h)
     crossing = jnp.minimum(crossing, _first_kink(system.kinks(t, state, drive_at(0.0), side, ddz), h))
@@ -191,7 +202,8 @@ def advance(system: Switching, t: Scalar, state: State, drive_at: Any, base: Cub
     middle = rk4(lambda s, q: system.rates(t + s, q, drive_at(s), side), 0.0, state, split, first)
 
     rest = h - split
-    z, dz = middle[0] - base.at(split), middle[1] - base.slope(split)
+    x, dx = system.base(middle, base.at(split), base.slope(split))
+    z, dz = middle[0] - x, middle[1] - dx
     half = 0.5 * rest
     side = edges.side(z + half * (dz + 0.5 * half * ddz), split + half)
     return rk4(lambda s, q: system.rates(t + s, q, drive_at(s), side), split, middle, rest)
@@ -200,13 +212,17 @@ def advance(system: Switching, t: Scalar, state: State, drive_at: Any, base: Cub
 def advance_in_turns(system: Switching, t: Scalar, state: State, drive_at: Any, base: Cubic, h: Scalar) -> State:
     """As `advance`, in loops over the two steps and their stages: slower where the laws are few, and where they are many with
     internal states among them the compiler, for which every stage is as much work as all laws, takes half as long."""
-    edges = Edges.over(system, t, base, h)
+    edges = Edges.over(system, t, base_ahead(system, state, base), h)
+
+    def relative(state: State, tau: Scalar) -> tuple[Scalar, Scalar]:
+        x, dx = system.base(state, base.at(tau), base.slope(tau))
+        return state[0] - x, state[1] - dx
 
     def step(carry: Any, last: Any) -> Any:
         state, begin, side = carry
         rest = h - begin
         first = system.rates(t + begin, state, drive_at(begin), side)
-        z, dz, ddz = state[0] - base.at(begin), state[1] - base.slope(begin), first[1] - base.bend(begin)
+        (z, dz), ddz = relative(state, begin), first[1] - system.bend(first, base.bend(begin))
         crossing = edges.first_crossing(begin, z, dz, ddz, rest)
         crossing = jnp.minimum(crossing, _first_kink(system.kinks(t + begin, state, drive_at(begin), side, ddz), rest))
         length = jnp.where(last, rest, jnp.where(crossing < rest, crossing, 0.5 * rest))
@@ -214,10 +230,10 @@ def advance_in_turns(system: Switching, t: Scalar, state: State, drive_at: Any, 
         side = jnp.where(last, side, edges.side(z + half * (dz + 0.5 * half * ddz), begin + half))
         state = _rk4_in_turns(lambda s, q: system.rates(t + s, q, drive_at(s), side), begin, state, length, first)
         begin = begin + length
-        z, dz, half = state[0] - base.at(begin), state[1] - base.slope(begin), 0.5 * (h - begin)
+        (z, dz), half = relative(state, begin), 0.5 * (h - begin)
         return (state, begin, edges.side(z + half * (dz + 0.5 * half * ddz), begin + half)), None
 
-    begun: Any = (state, jnp.zeros_like(state[0]), edges.side(state[0] - base.a, 0.0))
+    begun: Any = (state, jnp.zeros_like(state[0]), edges.side(relative(state, 0.0)[0], 0.0))
     (state, *_), _ = jax.lax.scan(step, begun, jnp.array([False, True]))
     return state
 

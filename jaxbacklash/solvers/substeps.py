@@ -11,6 +11,7 @@ import jax
 import jax.numpy as jnp
 
 from .dry import advance_dry
+from .dry_ports import advance_ports
 from .panels import Cubic, advance, advance_in_turns, advance_smooth, advance_smooth_in_turns
 
 MANY = 4
@@ -21,13 +22,16 @@ def one_panel(system: Any, t: Any, state: Any, a: Any, b: Any, h: Any, located: 
     """The state one panel of length ``h`` [s] after ``t``, the drive given as ``a`` and ``b`` at the panel's two edges."""
     base = Cubic.hermite(a.x, a.dx, b.x, b.dx, h)
     force = Cubic.between(a.force, a.dforce, b.force, b.dforce, h)
+    # A torque of which no rate is known is held, as a controller holds it.
+    smooth = None if a.dtorque is None else Cubic.hermite(a.torque, a.dtorque, b.torque, b.dtorque, h)
 
     def drive_at(tau: Any) -> Any:
-        return type(a)(base.at(tau), base.slope(tau), force.at(tau))
+        return type(a)(base.at(tau), base.slope(tau), force.at(tau), None, a.torque if smooth is None else smooth.at(tau))
 
-    in_turns = len(state) > 2 and len(system.effects) > MANY
+    in_turns = len(state) > system.mechanical and len(system.effects) > MANY
     if located and system.slides:
-        return advance_dry(system, t, state, drive_at, base, h)
+        dry = advance_dry if system.motor is None else advance_ports
+        return dry(system, t, state, drive_at, base, h)
     if located:
         return (advance_in_turns if in_turns else advance)(system, t, state, drive_at, base, h)
     return (advance_smooth_in_turns if in_turns else advance_smooth)(system, t, state, drive_at, h)

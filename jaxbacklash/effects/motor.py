@@ -1,0 +1,58 @@
+r"""The motor of a drive, and the laws that act at its port.
+
+.. math:: J_m \ddot\theta = \tau - c_m \dot\theta + T / N + \sum_k \tau_k(\theta, \dot\theta)
+
+:math:`\theta` turns N times for a turn of the link, :math:`\tau` is the torque of its windings, T what the joint takes from it
+(`jaxbacklash.system`). The laws here feel the motor's own angle and speed, before the gear.
+"""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import equinox as eqx
+import jax.numpy as jnp
+
+from ..mechanics import AbstractEffect, Instant
+from ..parameters import Scalar, param
+from .friction import direction
+from .scales import orders
+
+
+class Motor(eqx.Module):
+    r"""The motor of a drive: inertia, viscous friction, and turns of the motor for a turn of the link (known)."""
+
+    motor_inertia: Scalar = param(unit="kg m^2", lower=0.0, required=True, label="inertia of the motor")
+    motor_damping: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, required=True, label="viscous friction of the motor")
+    ratio: Scalar = param(unit="1", default=1.0, fixed=True, label="turns of the motor for a turn of the link")
+
+
+class CoulombMotor(AbstractEffect):
+    r"""Dry friction of the motor, :math:`T = -T_c\,\mathrm{sgn}(\dot\theta)`; at rest it holds up to :math:`T_c`."""
+
+    Tc: Scalar = param(unit="N m", null=0.0, lower=0.0, scale=0.01)
+    width: Scalar = param(unit="rad/s", default=1e-2, lower=0.0, fixed=True, label="regularisation of the sign")
+    port: ClassVar[str] = "motor"
+    slides: ClassVar[bool] = True
+
+    def dry(self, now: Instant) -> Scalar:
+        return self.Tc * now.rubbed * jnp.ones_like(now.dth)
+
+    def torque(self, now: Instant) -> Scalar:
+        return -self.dry(now) * direction(now.dth, now.slip_th, self.width)
+
+
+class Cogging(AbstractEffect):
+    r"""Ripple of the motor's own torque, :math:`T = A \sin(P \theta + \varphi)`, P periods in a turn of the motor."""
+
+    A: Scalar = param(unit="N m", null=0.0, scale=0.01)
+    P: Scalar = param(unit="1", default=12.0, lower=1.0, scale=1.0, label="periods in a turn of the motor")
+    phi: Scalar = param(unit="1", default=0.0, scale=0.1)
+    port: ClassVar[str] = "motor"
+
+    @classmethod
+    def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
+        return [cls(0.01, order, phase) for order in orders(None, 1.0) for phase in (0.0, 0.5 * jnp.pi)]
+
+    def torque(self, now: Instant) -> Scalar:
+        return self.A * jnp.sin(self.P * now.th + self.phi)
