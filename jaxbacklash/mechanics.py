@@ -110,15 +110,15 @@ class AbstractEffect(eqx.Module):
 
     Class attributes: ``states`` names of internal states; ``reach`` how large these can become, where the law bounds what it
     remembers; ``port`` where the torque acts, ``"joint"`` (between link and base, so it is part of the transmitted torque),
-    ``"ground"`` (between link and surroundings) or ``"motor"`` (on the motor of a drive); ``family`` a name shared by laws that data often cannot tell apart; ``catalogued`` False keeps a law out of the
-    search for missing effects; ``slides`` True for dry friction, whose torque is ``dry`` against the direction of sliding at its
-    port; ``beside`` True for friction in the joint that stands beside another law of it, where else there is one; ``absorbs``
-    names of simpler laws that this one contains, so that it takes their place instead of standing beside them (parameters of one
-    name are then the same); ``yields`` parameters that the presence of another effect makes superfluous, and that effect's name:
-    held beside it; ``motions`` of a link for which the law makes sense, ``"turning"`` and ``"sliding"``; ``joints`` in which it
-    does something that the joint does not do already, ``"play"``, ``"spring"`` and ``"free"``; ``alike`` names of laws for which
-    it is taken, or they for it, each with what a record must hold to tell the two; ``wave`` for a law that is a sine of a
-    coordinate.
+    ``"ground"`` (between link and surroundings) or ``"motor"`` (on the motor of a drive); ``family`` a name shared by laws that
+    data often cannot tell apart; ``catalogued`` False keeps a law out of the search for missing effects; ``slides`` True for dry
+    friction, whose torque is ``dry`` against the direction of sliding at its port; ``beside`` True for friction in the joint that
+    stands beside another law of it, where else there is one; ``absorbs`` names of simpler laws that this one contains, so that it
+    takes their place instead of standing beside them (parameters of one name are then the same); ``yields`` parameters that the
+    presence of another effect makes superfluous, and that effect's name: held beside it; ``motions`` of a link for which the law
+    makes sense, ``"turning"`` and ``"sliding"``; ``joints`` in which it does something that the joint does not do already,
+    ``"play"``, ``"spring"`` and ``"free"``; ``alike`` names of laws for which it is taken, or they for it, each with what a
+    record must hold to tell the two; ``wave`` for a law that is a sine of a coordinate.
     """
 
     states: ClassVar[tuple[str, ...]] = ()
@@ -167,7 +167,7 @@ class AbstractEffect(eqx.Module):
         return dataclasses.replace(self, **{n: null + factor * (getattr(self, n) - null) for n, null in nulls.items()})
 
     def torque(self, now: Instant) -> Scalar:
-        """Torque on the link, or at its port on the motor [N m], dry friction included (in the direction ``now`` knows, else smoothed)."""
+        """Torque on the link, or on the motor [N m], dry friction included (in the direction ``now`` knows, else smoothed)."""
         return jnp.zeros_like(now.y)
 
     def dry(self, now: Instant) -> Scalar:

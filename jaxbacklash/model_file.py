@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .effects import Contact, Damper, Spring
+from .effects import Contact, Damper, Motor, Spring
 from .errors import BadInput
 from .mechanics import AbstractEffect, canonical_name, catalogue
 from .parameters import specs, unit_text
@@ -20,6 +20,7 @@ from .records.force import BETWEEN
 from .system import System
 
 OBSERVED = ("z", "y", "T")
+OF_A_DRIVE = ("motor", "link", "motor link")
 MOST = 1e15
 """No value of a model is larger in size: beyond it nothing of ordinary size is left beside it in double precision."""
 LARGEST = 50_000_000
@@ -56,7 +57,7 @@ def dump_model(
     lines += ["[model]", f"observed = {_quoted(system.observed)}"]
     described = specs(system)
     lines.append(entry("inertia", system.inertia, described["inertia"].unit))
-    for part in (system.contact, system.damper):
+    for part in (system.contact, system.damper, system.motor):
         if part is not None:
             lines += [entry(f.name, getattr(part, f.name), f.metadata["spec"].unit) for f in fields(part)]
     if between is not None:
@@ -188,31 +189,46 @@ def _build(data: dict[str, Any], where: str) -> System:
     _noise(data, where)
     values = dict(model)
     observed = values.pop("observed", "z")
-    if observed not in OBSERVED:
-        raise BadInput(f"{where}: [model] observed is {observed!r}, wanted one of {', '.join(OBSERVED)}")
-    allowed = {"inertia", "backlash", "stiffness", "width", "damping"}
+    of_motor = {f.name for f in fields(Motor)}
+    drive = bool(of_motor & set(values))
+    known = OF_A_DRIVE if drive else OBSERVED
+    if observed not in known:
+        raise BadInput(f"{where}: [model] observed is {observed!r}, wanted one of {', '.join(known)}")
+    if drive and not of_motor <= set(values):
+        raise BadInput(f"{where}: [model] lacks {min(of_motor - set(values))}, wanted {', '.join(sorted(of_motor))} of a drive")
+    allowed = {"inertia", "backlash", "stiffness", "width", "damping"} | of_motor
     unknown = sorted(set(values) - allowed)
     if unknown:
         raise BadInput(f"{where}: [model] has an entry {unknown[0]}, wanted only {', '.join(sorted(allowed))}")
     if "backlash" in values and "stiffness" not in values:
         raise BadInput(f"{where}: [model] has a backlash but no stiffness, wanted both, or neither for a free axis")
     numbers = {name: _value(value, f"{where}: [model] {name}") for name, value in values.items()}
-    for name in ("inertia", "stiffness"):
+    for name in ("inertia", "stiffness", "motor_inertia", "ratio"):
         if name in numbers and numbers[name] <= 0.0:
             raise BadInput(f"{where}: [model] {name} is {numbers[name]:g}, wanted a positive number")
     contact: Contact | Spring | None = None
-    for name, what in (("backlash", "the total play"), ("damping", "a damping"), ("width", "a length")):
+    for name, what in (
+        ("backlash", "the total play"),
+        ("damping", "a damping"),
+        ("width", "a length"),
+        ("motor_damping", "a damping"),
+    ):
         if numbers.get(name, 0.0) < 0.0:
             raise BadInput(f"{where}: [model] {name} is {numbers[name]:g}, wanted {what}, zero or more")
     if "backlash" in numbers:
         contact = Contact(numbers["backlash"], numbers["stiffness"], numbers.get("width", 0.0))
     elif "stiffness" in numbers:
         contact = Spring(numbers["stiffness"])
-    system = System(numbers.get("inertia", 1.0), contact, Damper(numbers.get("damping", 0.0)), observed=observed)
+    motor = Motor(**{name: numbers[name] for name in of_motor}) if drive else None
+    system = System(numbers.get("inertia", 1.0), contact, Damper(numbers.get("damping", 0.0)), observed=observed, motor=motor)
     tables = data.get("effects", {})
     if not isinstance(tables, dict):
         raise BadInput(f"{where}: effects is not a table, wanted [effects.NAME]")
-    return system.with_effects(*(_effect(name, entries, where) for name, entries in tables.items()))
+    effects = [_effect(name, entries, where) for name, entries in tables.items()]
+    at_motor = next((canonical_name(effect) for effect in effects if effect.port == "motor"), None)
+    if at_motor is not None and not drive:
+        raise BadInput(f"{where}: [effects.{at_motor}] acts on a motor, wanted motor_inertia, motor_damping and ratio in [model]")
+    return system.with_effects(*effects)
 
 
 def _effect(name: str, entries: Any, where: str) -> AbstractEffect:

@@ -84,6 +84,8 @@ def cross_check(fit: Fit) -> CrossCheck:
     record = fit.records[0]
     if record.kind == "transmitted":
         return beside_loop(fit)
+    if record.kind == "drive":
+        return _silent("the torque of its motor drives this joint, and skeletons know a base that is prescribed")
     if not isinstance(fit.system.contact, Contact):
         return _silent("the model has no play, so there is none to compare")
     try:

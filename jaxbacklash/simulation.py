@@ -277,7 +277,13 @@ def measured_base(record: Record, *, between: str | None = None, panels: int = R
 
 def as_record(trajectory: Trajectory, system: System, *, path: str = "") -> Record:
     """A simulated motion as a record with the channels a measurement would have."""
-    channels: dict[str, np.ndarray] = {}
+    if system.motor is not None:
+        push = np.zeros(1) if trajectory.drive.torque is None else np.asarray(trajectory.drive.torque)
+        seen = {name: np.asarray(trajectory.observed)[:, i] for i, name in enumerate(system.channels)}
+        channels = {"torque": np.broadcast_to(push, trajectory.t.shape).copy(), **seen}
+        told = frozenset({"t", *channels})
+        return Record(np.asarray(trajectory.t), channels, path, confirmed=told, ratio=float(system.motor.ratio))
+    channels = {}
     force = np.asarray(jnp.broadcast_to(trajectory.drive.force, trajectory.t.shape))
     if np.any(np.asarray(trajectory.x)):
         channels["x"] = np.asarray(trajectory.x)

@@ -84,6 +84,13 @@ class System(eqx.Module):
         """Inertia that swings on the contact [kg m^2]: that of the link, against the motor's seen through the gear in a drive."""
         return self.inertia if self.motor is None else 1.0 / sum(a * a * w for a, w in zip(self.rows["joint"], self.mobility))
 
+    def on_its_base(self) -> System:
+        """The joint of a drive with its motor as the base that moves as prescribed, laws of the motor left out; else as it is."""
+        if self.motor is None:
+            return self
+        kept = {name: effect for name, effect in self.effects.items() if effect.port != "motor"}
+        return System(self.inertia, self.contact, self.damper, kept, "y", self.smoothed)
+
     @property
     def state_names(self) -> tuple[str, ...]:
         """Names of the state: y, dy, of a drive th, dth, and ``effect.state`` for internal states."""

@@ -4,10 +4,12 @@ from jaxbacklash.effects import (
     AsymmetricGap,
     AsymmetricStiffness,
     BoucWen,
+    Cogging,
     ContactDamping,
     ContactExponent,
     CoulombGround,
     CoulombJoint,
+    CoulombMotor,
     CubicStiffness,
     Dahl,
     DampingDrift,
@@ -69,6 +71,8 @@ LAWS = {
     "torque_ripple": TorqueRipple(6.0, 50.0, 0.7),
     "transmission_error": TransmissionError(0.002, 40.0, 0.7),
 }
+MOTOR_LAWS = {"cogging": Cogging(0.02, 7.0, 0.4), "coulomb_motor": CoulombMotor(0.012, 0.05)}
+"""Laws at the motor's port, which do nothing where the base moves as prescribed."""
 FORMS = {
     "contact_damping that never pulls": ContactDamping(15.0, 0.0),
     "gravity off the vertical": Gravity(-28.0, 0.6),

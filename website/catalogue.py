@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[1]
 LAWS = Path(__file__).with_name("laws")
 PORTS = {
     "joint": "between link and base, across the joint", "ground": "between link and surroundings",
-    "play": "it changes the play", "sensor": "it changes what is measured",
+    "motor": "on the motor of a drive, before its gear", "play": "it changes the play", "sensor": "it changes what is measured",
 }  # fmt: skip
 GROUPS = {
     "Loads on the link": ("gravity", "linear_gravity", "preload", "torque_ripple", "disturbance", "quadratic_drag"),
@@ -31,6 +31,7 @@ GROUPS = {
     "Dry friction": ("coulomb_joint", "coulomb_ground", "stribeck", "load_friction"),
     "Friction that gives before it slips": ("dahl", "lugre", "bouc_wen"),
     "Structure": ("flexible_link",),
+    "The motor of a drive": ("coulomb_motor", "cogging"),
     "The measuring chain": ("sensor_delay", "clock_drift", "sensor_filter", "sensor_gain", "sensor_offset"),
     "A law from data": ("learned_torque",),
 }
@@ -69,8 +70,8 @@ def conventions() -> dict[str, list[str]]:
 def section(name: str, row: list[str], numbers: dict[str, float | None] | None) -> str:
     """One law: what it is, the law, its parameters, its picture and the numbers under it."""
     what, law, _, port = row
-    text = [f"### {name}\n", f"{what[:1].upper()}{what[1:]}. It acts {PORTS[port]}.\n" if port in ("joint", "ground") else
-            f"{what[:1].upper()}{what[1:]}: {PORTS[port]}.\n", f"`{law}`\n"]  # fmt: skip
+    acts = f". It acts {PORTS[port]}.\n" if port in ("joint", "ground", "motor") else f": {PORTS[port]}.\n"
+    text = [f"### {name}\n", f"{what[:1].upper()}{what[1:]}{acts}", f"`{law}`\n"]
     only = jb.catalogue()[name].motions
     if len(only) == 1:
         text.append(f"Only for a {only[0]} link: `refine` and `diagnose` do not propose it for any other.\n")

@@ -76,7 +76,7 @@ def find_causes(fit: Fit, progress: Callable[[str, float], None] = silent) -> li
     ...     print(cause.sentence)
     z is late by ... ms against x: with that the model misses ... times the noise instead of ...
     """
-    if fit.problem is None or fit.unknowns is None or not beyond_chance(fit) or fit.records[0].kind == "transmitted":
+    if fit.problem is None or fit.unknowns is None or not beyond_chance(fit) or fit.records[0].kind in ("transmitted", "drive"):
         return []
     progress("looking for causes in the record", 0.87)
     slow = slow_reading(fit.records[0], translational=fit.translational) if len(fit.records) == 1 else None

@@ -42,7 +42,8 @@ class Reading:
     skip: Annotated[int, typer.Option("--skip", help="Lines at the beginning of a text file to pass over")] = 0
     decimal: Annotated[str | None, typer.Option("--decimal", help='Decimal mark of a text file: "." or ","')] = None
     unwrap: Annotated[Texts, typer.Option("--unwrap", help="Channels whose jumps by a turn are undone: x or x,y")] = None
-    ratio: Annotated[float | None, typer.Option("--ratio", help="Turns of x for a turn of the link, with a gear between")] = None
+    ratio: Annotated[float | None, typer.Option("--ratio", help="Turns of x, or of the motor, for a turn of the link")] = None
+    kt: Annotated[float | None, typer.Option("--kt", help="Torque of a drive's motor for an ampere [N m/A]")] = None
     sign: Annotated[Texts, typer.Option("--sign", help="Channels measured the other way round: y or F")] = None
     despike: Annotated[Texts, typer.Option("--despike", help="Channels from which single bad samples are taken: z or x,z")] = None
     accept: Annotated[
@@ -82,6 +83,7 @@ class Reading:
             start=self.start,
             stop=self.stop,
             accept=accepted,
+            kt=self.kt,
             **{name: parse_channels(texts, f"--{name}") if texts else frozenset() for name, texts in chosen.items()},
         )
 

@@ -9,7 +9,18 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadInput, NoAnswer
-from ..excitation import AbstractExcitation, Chirp, Harmonic, Multisine, Rest, Sampled, SteppedSine
+from ..excitation import (
+    AbstractExcitation,
+    AbstractSignal,
+    Chirp,
+    Harmonic,
+    HeldTorque,
+    MotorTorque,
+    Multisine,
+    Rest,
+    Sampled,
+    SteppedSine,
+)
 from ..model_file import input_between, load_model
 from ..records import Record, read_record, write_record
 from ..records.checks import MIN_SAMPLES, MIN_SECONDS
@@ -62,9 +73,16 @@ def run(
         raise BadInput(f"--out {out}: found the suffix {out.suffix!r}, wanted one of {', '.join(WRITERS)}")
     system = load_model(model)
     rng = np.random.default_rng(seed)
-    measured = _measured(excitation)
+    ratio = None if system.motor is None else float(system.motor.ratio)
+    measured = _measured(excitation, ratio)
+    drive: AbstractExcitation
     if measured is None:
         drive, t0 = parse_excitation(excitation, as_force, duration, rng), 0.0
+        if system.motor is not None and isinstance(drive, AbstractSignal) and not as_force:
+            drive = MotorTorque(drive)
+    elif measured.kind == "drive":
+        t0, duration = float(measured.t[0]), float(measured.t[-1] - measured.t[0])
+        drive = HeldTorque(_f(t0), _f(measured.dt), measured.channels["torque"])
     else:
         between = input_between(model)
         drive = measured_base(measured, between=between, panels=default_panels(system, measured.rate_hz))
@@ -78,7 +96,7 @@ def run(
             f"one that steps of {1000.0 / rate:.3g} ms can follow (--rate)?"
         )
     record = as_record(path, system, path=str(out))
-    if measured is not None and (how := way(measured, between)) in SAID:
+    if measured is not None and measured.kind != "drive" and (how := way(measured, between)) in SAID:
         # Lines stood for the force between its samples; what a logger shows are the samples.
         at = (record.t - t0) / measured.dt
         at = np.floor(at + 1e-6) if how == "held" else at
@@ -87,7 +105,7 @@ def run(
         moved = {
             name: values + noise * rng.standard_normal(values.size)
             for name, values in record.channels.items()
-            if name in ("x", "y", "z")
+            if name in ("x", "y", "z", "motor", "link")
         }
         record = record.replace(**moved)
     write_record(record, out)
@@ -114,13 +132,14 @@ def check_size(system: System, drive: AbstractExcitation, duration: float, rate:
     bounded(where, samples, MOST_SAMPLES, "samples", "shorten --duration or lower --rate")
     panels = samples * default_panels(system, rate)
     bounded(where, panels, MOST_STEPS, "steps (of 1 ms or less, 20 a period of the contact)", "shorten --duration")
-    lines = max((np.size(getattr(drive, name)) for name in drive.series if getattr(drive, name) is not None), default=1)
-    if not isinstance(drive, Sampled):
+    signal = drive.signal if isinstance(drive, MotorTorque) else drive
+    lines = max((np.size(getattr(signal, name)) for name in signal.series if getattr(signal, name) is not None), default=1)
+    if not isinstance(drive, Sampled | HeldTorque):
         bounded(where, panels * lines, MOST_SINES, "values of sines", "shorten --duration or take fewer lines")
 
 
-def _measured(text: str) -> Record | None:
-    """The record that ``--excitation`` names, None where it names none.
+def _measured(text: str, ratio: float | None) -> Record | None:
+    """The record that ``--excitation`` names, of a drive with this ``ratio``; None where it names none.
 
     Raises
     ------
@@ -129,9 +148,12 @@ def _measured(text: str) -> Record | None:
     """
     if text.partition(":")[0] in WANTED or not Path(text).suffix:
         return None
-    record = read_record(text)
+    record = read_record(text, ratio=ratio)
     if record.input_name is None:
         raise BadInput(f"--excitation {text}: the record has neither x nor F to drive with")
+    if (record.kind == "drive") != (ratio is not None):
+        raise BadInput(f"--excitation {text}: is a record of kind {record.kind}, which does not drive this model; wanted "
+                       + ("x or F" if ratio is None else "the torque at the motor"))  # fmt: skip
     return record
 
 

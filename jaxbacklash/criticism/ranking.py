@@ -16,6 +16,7 @@ from ..frames import dataframe
 from ..mechanics import AbstractEffect
 from ..parameters import free_specs, specs, values
 from ..precision import require_double_precision
+from ..records.prescribed import require_prescribed
 from ..shooting.problem import Unknowns
 from ..showing import Shown
 from ..system import System
@@ -131,6 +132,7 @@ def rank_effects(fit: Fit, *, window: float | None = None) -> Ranking:
     'gravity'
     """
     require_double_precision("rank_effects")
+    require_prescribed(fit.records, "rank_effects")
     full = fit.system
     bare = System(full.inertia, full.contact, full.damper, {}, full.observed)
     own = tuple(name for name in fit.free if name.partition(".")[0] not in full.effects)

@@ -24,6 +24,7 @@ from ..fitting.setup import base_system, free_names
 from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..records.force import tell_way
+from ..records.prescribed import require_prescribed
 from ..records.relative_motion import check_answers
 from ..records.size import check_size
 from ..regression.equation_error import Start
@@ -91,6 +92,7 @@ def refine(
     (('gravity',), 'complete')
     """
     require_double_precision("refine")
+    require_prescribed([record], "refine")
     record = oriented(record)
     heldout = None if heldout is None else oriented(heldout)
     check_size([record] if heldout is None else [record, heldout])

@@ -26,10 +26,10 @@ from .loads import Gravity as Gravity
 from .loads import LinearGravity as LinearGravity
 from .loads import Preload as Preload
 from .loads import TorqueRipple as TorqueRipple
-from .relaxation import Relaxation as Relaxation
 from .motor import Cogging as Cogging
 from .motor import CoulombMotor as CoulombMotor
 from .motor import Motor as Motor
+from .relaxation import Relaxation as Relaxation
 from .stiffness import AsymmetricGap as AsymmetricGap
 from .stiffness import AsymmetricStiffness as AsymmetricStiffness
 from .stiffness import ContactExponent as ContactExponent

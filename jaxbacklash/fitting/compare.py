@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from typing import Any
 
@@ -55,6 +56,25 @@ class Comparison(Shown):
         return self.score.to_dataset(unit).assign_attrs(record=self.record.path, noise=self.noise)
 
 
+def _of_this_drive(system: System, record: Record) -> System:
+    """The drive as this record sees it: by the encoders that it has.
+
+    Raises
+    ------
+    BadInput
+        One of the two is of a drive and the other is not, or their gears differ.
+    """
+    where = record.path or "the record"
+    if system.motor is None or record.kind != "drive":
+        one, other = ("record", "model") if record.kind == "drive" else ("model", "record")
+        raise BadInput(f"{where}: the {one} is of a drive with its motor, the {other} is not; wanted both, or neither")
+    if abs(record.ratio - float(system.motor.ratio)) > 1e-6 * record.ratio:
+        raise BadInput(
+            f"{where}: is of a gear of {record.ratio:g}, the model of {float(system.motor.ratio):g}; wanted one --ratio"
+        )
+    return dataclasses.replace(system, observed=" ".join(record.observed_names))
+
+
 def compare(
     system: System, record: Record, *, window: float | None = None, translational: bool = False,
     known: tuple[float, float] = (1.0, 0.0),
@@ -85,7 +105,9 @@ def compare(
     >>> print(found.sentence())
     The model misses this record by ... times the noise, ...; the worst window begins at ... s.
     """
-    if record.observed_name != system.observed:
+    if record.kind == "drive" or system.motor is not None:
+        system = _of_this_drive(system, record)
+    elif record.observed_name != system.observed:
         if {record.observed_name, system.observed} == {"z", "y"}:
             # The same motion seen from the base or from the ground: the record decides.
             system = System(system.inertia, system.contact, system.damper, system.effects, record.observed_name)

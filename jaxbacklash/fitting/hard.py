@@ -18,7 +18,7 @@ from .settings import SHORTEST, TAIL
 
 
 def contact_samples(system: System, dt: float) -> float:
-    r"""Samples (spacing ``dt`` [s]) in a contact: :math:`\pi \sqrt{J/k}` is half a period, J what swings on it; infinite without a contact."""
+    r"""Samples (spacing ``dt`` [s]) in a contact: :math:`\pi \sqrt{J/k}` is half a period, J of what swings; else infinite."""
     if system.contact is None:
         return np.inf
     stiffness = float(system.contact.stiffness)

@@ -187,13 +187,15 @@ def add_effects(system: System, effects: Sequence[AbstractEffect | str]) -> Syst
 
 
 def check_motion(system: System, *, translational: bool) -> None:
-    """Refuse effects that make no sense for how the link moves, such as gravity, G sin y, for a mass that slides.
+    """Refuse effects that make no sense for how the link moves, such as gravity, G sin y, for a mass that slides, and laws of a
+    motor where there is none.
 
     Raises
     ------
     BadInput
         With the first such effect's name.
     """
+    _check_ports(system)
     motion = motion_of(translational)
     odd = next((name for name, effect in system.effects.items() if motion not in effect.motions), None)
     if odd is None:
@@ -203,6 +205,19 @@ def check_motion(system: System, *, translational: bool) -> None:
     raise BadInput(
         f"--effects {odd}: is a law of a {other} link ({law}), and {said}; wanted laws of a {motion} link, or the other option"
     )
+
+
+def _check_ports(system: System) -> None:
+    """Refuse laws of a motor where there is none, and of the measuring chain where several encoders are one motion's."""
+    for name, effect in system.effects.items():
+        if system.motor is None and effect.port == "motor":
+            raise BadInput(
+                f"--effects {name}: acts on the motor of a drive, and this base moves as prescribed; wanted a record with the "
+                "motor's torque, or laws of the joint and of the link"
+            )
+        changes = type(effect).observe is not AbstractEffect.observe or type(effect).lag is not AbstractEffect.lag
+        if system.motor is not None and changes:
+            raise BadInput(f"--effects {name}: the measuring chain of a drive is taken as it is so far; wanted laws that act")
 
 
 def make_problem(system: System, windows: Windows, free: Sequence[str], *, tie: float = 0.0) -> Problem:

@@ -210,10 +210,10 @@ def restoring_force(found: Fit | Comparison, *, record: int = 0, ax: Where = Non
     one = beside(found, record)
     if one.system.contact is None:
         raise BadInput("the model has no spring, so it returns no torque that could be drawn")
-    motion = _motion(one.record)
+    motion, joint = _motion(one.record), one.system.on_its_base()
     at = np.linspace(motion.z.min(), motion.z.max(), 801)
     return force_over_motion(
-        motion.z[INSIDE], motion.restoring_torque(one.system)[INSIDE], model_z=at, model_torque=joint_law(one.system, at),
+        motion.z[INSIDE], motion.restoring_torque(joint)[INSIDE], model_z=at, model_torque=joint_law(joint, at),
         edges=one.edges, unit=unit_text("N m", translational=one.translational, per_inertia=one.per_inertia),
         length_unit=one.length, ax=ax,
     )  # fmt: skip
@@ -260,4 +260,7 @@ def force_loop(found: Fit | Comparison, *, record: int = 0, ax: Where = None) ->
 def _motion(record: Record) -> Motion:
     if record.observed_name == "T":
         raise BadInput(f"{record.path or 'the record'}: holds the transmitted force and no motion of the link; draw force_loop")
-    return Motion(record, record.observed_name)
+    if record.kind == "drive" and record.relative is None:
+        raise BadInput(f"{record.path or 'the record'}: has one encoder and no motion of the joint; draw fit or residuals")
+    seen = record.on_its_base()
+    return Motion(seen, seen.observed_name)

@@ -16,6 +16,8 @@ CHANNELS = ("x", "z", "y", "F", "T")
 """Base motion, relative motion, absolute motion, force on the link, transmitted force (the last two may be torques)."""
 DRIVE = ("torque", "motor", "link")
 """Torque at the motor of a drive, and what its encoders show: the motor's shaft, and the link behind the gear."""
+OF_A_DRIVE = ("torque", "current", "motor", "link")
+"""What a file may have of these: a current in place of the torque."""
 
 MIN_SAMPLES = 64
 MIN_SECONDS = 0.5
@@ -24,7 +26,10 @@ LARGEST_SERIES = 1e60
 LARGEST = 1e12
 """No value in SI units is larger in size, and no motion or force smaller in range than its inverse: squares and fourth powers of
 them, which a fit needs, stay far within double precision."""
-WANTED_CHANNELS = "x with z or y (base motion), F with y or z (force), x with T (transmitted force), or z or y alone (free decay)"
+WANTED_CHANNELS = (
+    "x with z or y (base motion), F with y or z (force), x with T (transmitted force), "
+    "torque or current with motor or link (drive), or z or y alone (free decay)"
+)
 
 
 def wrong(place: str, found: str, wanted: str, remedy: str = "") -> BadInput:

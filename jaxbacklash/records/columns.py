@@ -14,7 +14,7 @@ import numpy as np
 
 from jaxbacklash.errors import BadInput
 
-from .checks import CHANNELS, WANTED_CHANNELS, listed, wrong
+from .checks import CHANNELS, OF_A_DRIVE, WANTED_CHANNELS, listed, wrong
 from .header_units import split_unit
 from .roles import columns_option, guess_roles, spec_of
 from .table import Column, Table
@@ -55,14 +55,43 @@ def pick(table: Table, mapping: Mapping[str, str], where: str, *, timed: bool = 
         found = own_number(table, channel, numbers)
         if channel not in numbers and found is not None:
             numbers[channel] = found
+    numbers = _of_a_drive(table, numbers, where)
     _complete(table, numbers, where, timed)
     channels = {channel: table.columns[number] for channel, number in numbers.items()}
     extras = {
-        f"{column.name} (unmapped)" if column.name in ("t", *CHANNELS) else column.name: column.values
+        f"{column.name} (unmapped)" if column.name in ("t", *CHANNELS, *OF_A_DRIVE) else column.name: column.values
         for number, column in reversed(list(enumerate(table.columns)))
         if number not in numbers.values() and not _empty(column)
     }
     return Picked(channels, numbers, dict(reversed(extras.items())), _notes(table, mapping, numbers))
+
+
+def _of_a_drive(table: Table, numbers: Mapping[str, int], where: str) -> dict[str, int]:
+    """The columns of a drive by their own names, where no other experiment is there; motor and link alone are x and y.
+
+    Raises
+    ------
+    BadInput
+        Channels of a drive beside those of another experiment.
+    """
+    drives = {channel: number for channel, number in numbers.items() if channel in OF_A_DRIVE}
+    others = sorted(set(numbers) & set(CHANNELS))
+    if drives and others:
+        raise wrong(where, f"{next(iter(drives))} beside {others[0]}", f"{WANTED_CHANNELS}, not two experiments in one")
+    if others:
+        return dict(numbers)
+    for channel in OF_A_DRIVE:
+        found = own_number(table, channel, {**numbers, **drives})
+        if channel not in drives and found is not None:
+            drives[channel] = found
+    if {"torque", "current"} <= set(drives):
+        del drives["current" if "torque" in numbers or "current" not in numbers else "torque"]  # what was mapped, else the torque
+    pushed = {"torque", "current"} & set(drives)
+    if not pushed and {"motor", "link"} <= set(drives):
+        drives = {"x": drives["motor"], "y": drives["link"]}
+    elif not (pushed and {"motor", "link"} & set(drives)):
+        return dict(numbers)
+    return {**{channel: number for channel, number in numbers.items() if channel == "t"}, **drives}
 
 
 def column_number(table: Table, spec: str, where: str) -> int:
@@ -132,7 +161,7 @@ def own_number(table: Table, channel: str, taken: Mapping[str, int]) -> int | No
 
 def _complete(table: Table, numbers: Mapping[str, int], where: str, timed: bool) -> None:
     """Refuse a table without times or without a motion, with the option that may be what is wanted."""
-    moves = {"z", "y"} & set(numbers) or {"x", "T"} <= set(numbers)
+    moves = {"z", "y", "motor", "link"} & set(numbers) or {"x", "T"} <= set(numbers)
     if ("t" in numbers or not timed) and moves:
         return
     unused = next((name for name in ("t", *CHANNELS) if name in table.left_out and name not in numbers), None)

@@ -7,7 +7,7 @@ import math
 import re
 from collections.abc import Iterable
 
-from .checks import CHANNELS, listed, wrong
+from .checks import CHANNELS, OF_A_DRIVE, listed, wrong
 from .units import UNITS, known_unit
 
 PAIR = re.compile(r"""\s*(?P<name>[^=,"']*?)\s*=\s*(?:"(?P<double>[^"]*)"|'(?P<single>[^']*)'|(?P<plain>[^,]*))\s*(?:,|$)""")
@@ -72,7 +72,7 @@ def parse_mapping(text: str | Iterable[str], option: str, *, commas_in_values: b
 
 def _known(name: str, option: str) -> None:
     if name not in UNITS:
-        raise wrong(option, f'the channel "{name}"', f"one of t, {listed(CHANNELS)}")
+        raise wrong(option, f'the channel "{name}"', f"one of t, {listed((*CHANNELS, *OF_A_DRIVE))}")
 
 
 def parse_columns(text: str | Iterable[str], option: str = "--columns") -> dict[str, str]:

@@ -28,7 +28,9 @@ class ReadOptions:
     unwrap : frozenset of str
         Channels whose jumps by a full turn (2 pi, 360 degrees, 2^n counts) are undone.
     ratio : float or None
-        Turns of x for a turn of the link: x is divided by it.
+        Turns of x, or of the motor of a drive, for a turn of the link: x is divided by it.
+    kt : float or None
+        Torque of the motor for an ampere [N m/A], where its current was measured.
     sign : frozenset of str
         Channels measured the other way round: turned.
     despike : frozenset of str
@@ -56,3 +58,4 @@ class ReadOptions:
     start: float | None = None
     stop: float | None = None
     accept: frozenset[str] = frozenset()
+    kt: float | None = None

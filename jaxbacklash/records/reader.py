@@ -22,6 +22,7 @@ from .checks import number, wrong
 from .clocks import on_one_clock, times_of
 from .columns import Picked, pick
 from .conversion import in_si
+from .driven import as_torque
 from .files import read_table
 from .finding import ASK, REFUSE, Finding
 from .findings import find, find_in_times
@@ -53,6 +54,7 @@ def read_record(
     start: float | None = None,
     stop: float | None = None,
     accept: Collection[str] = (),
+    kt: float | None = None,
 ) -> Record:
     """Read a record.
 
@@ -78,11 +80,13 @@ def read_record(
     unwrap, sign, despike : collections of str
         Channels whose jumps by a turn are undone, that were measured the other way round, whose spikes are taken out.
     ratio : float, optional
-        Turns of x for a turn of the link.
+        Turns of x, or of the motor of a drive, for a turn of the link.
     start, stop : float, optional
         Only the samples between these times are used, s.
     accept : collection of str
         Kinds of finding (`findings.rules.RULES`) that are right as they are.
+    kt : float, optional
+        Torque of the motor of a drive for an ampere, N m/A, where its current was measured.
 
     Returns
     -------
@@ -101,7 +105,7 @@ def read_record(
     """
     options = ReadOptions(
         columns or {}, units or {}, scales or {}, resample, rate, skip, frozenset(unwrap), ratio, frozenset(sign),
-        frozenset(despike), decimal, start, stop, frozenset(accept),
+        frozenset(despike), decimal, start, stop, frozenset(accept), kt,
     )  # fmt: skip
     return record_of(read_table(Path(path), options), options, str(path))
 
@@ -116,7 +120,8 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
     t, told = times_of(table, picked, options, where)
     _whole(t, channels, table, where, options)
     channels, compared = on_one_clock(table, picked, t, channels, options, where)
-    for note in (*table.notes, *picked.notes, *notes, *told, *compared):
+    channels, driven = as_torque(channels, options, where)
+    for note in (*table.notes, *picked.notes, *notes, *told, *compared, *driven):
         warnings.warn(f"{where}: {note}", UserWarning, stacklevel=3)
     extras = {name: values for name, values in picked.extras.items() if values.shape == t.shape}
     used = RowsUsed(table)
@@ -147,14 +152,16 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
     t, channels, extras = after(t, channels, extras, findings)
     if options.resample:
         t, channels, extras = _even(t, channels, extras, options, where)
-    record = Record(t, channels, where, extras, _confirmed(picked, options), tuple(findings))
+    told = {"ratio": options.ratio or 1.0, "per_kt": "current" in picked.channels and options.kt is None}
+    geared = told if "torque" in channels else {}
+    record = Record(t, channels, where, extras, _confirmed(picked, options), tuple(findings), **geared)
     undriven(record, table, picked, options)
     return record
 
 
 def _check(options: ReadOptions) -> None:
     """Refuse numbers that cannot be meant, and channels that no record has."""
-    for option, value in (("--rate", options.rate), ("--ratio", options.ratio)):
+    for option, value in (("--rate", options.rate), ("--ratio", options.ratio), ("--kt", options.kt)):
         if value is not None and not (math.isfinite(value) and value != 0.0 and (value > 0.0 or option == "--ratio")):
             raise wrong(option, f"{value:g}", "a positive number")
     if options.skip < 0:
@@ -169,8 +176,12 @@ def _named(picked: Picked, options: ReadOptions, where: str) -> None:
         absent = sorted(named - set(picked.channels))
         if absent:
             raise wrong(where, f"no channel {absent[0]}, which {option} names", f"one of {checks.listed(picked.channels)}")
-    if options.ratio is not None and "x" not in picked.channels:
+    if options.ratio is not None and not {"x", "motor", "torque", "current"} & set(picked.channels):
         raise wrong(where, "no channel x, of which --ratio gives the turns", f"one beside {checks.listed(picked.channels)}")
+    if options.kt is not None and "current" not in picked.channels:
+        raise wrong(where, "no current, for which --kt gives the torque", f"one beside {checks.listed(picked.channels)}")
+    if options.ratio is not None and options.ratio < 0.0 and "x" not in picked.channels:
+        raise wrong("--ratio", f"{options.ratio:g}", "a positive number, and --sign link where it turns back")
 
 
 def _whole(t: np.ndarray, channels: dict[str, np.ndarray], table: Table, where: str, options: ReadOptions) -> None:

@@ -130,6 +130,15 @@ class Record:
             return seen["y"] - seen.get("x", 0.0)
         return seen["link"] - seen["motor"] / self.ratio if {"motor", "link"} <= set(seen) else None
 
+    def on_its_base(self) -> "Record":
+        """A drive with an encoder on motor and link as its joint sees it: the motor behind its gear is the base motion x, the
+        link's angle y. Any other record as it is."""
+        if self.kind != "drive" or self.relative is None:
+            return self
+        seen = {"x": self.channels["motor"] / self.ratio, "y": self.channels["link"]}
+        told = self.confirmed | {"t", "x", "y"}
+        return dataclasses.replace(self, channels=seen, confirmed=told, ratio=1.0, per_kt=False)
+
     def between(self, t0: float, t1: float) -> "Record":
         """The samples with t0 <= t <= t1 (s), as a record; refused like any other when too little is left."""
         # Half a thousandth of a step of tolerance: 0.3 must select the sample at 0.30000000000000004.

@@ -22,11 +22,15 @@ FORCE = {"N": 1.0, "kN": 1e3, "lbf": 4.4482216152605, "kip": 4448.2216152605}
 TORQUE = {"N m": 1.0, "N mm": 1e-3, "N cm": 1e-2, "mN m": 1e-3, "kN m": 1e3, "lbf in": 4.4482216152605 * 0.0254}
 
 MOTION = ANGLE | LENGTH
-FAMILIES = (TIME, ANGLE, LENGTH, FORCE, TORQUE)
+CURRENT = {"A": 1.0, "mA": 1e-3}
+FAMILIES = (TIME, ANGLE, LENGTH, FORCE, TORQUE, CURRENT)
 UNITS: dict[str, dict[str, float]] = {
     "t": TIME,
     **dict.fromkeys(("x", "z", "y"), MOTION),
     **dict.fromkeys(("F", "T"), FORCE | TORQUE),
+    "torque": TORQUE,
+    "current": CURRENT,
+    **dict.fromkeys(("motor", "link"), ANGLE),
 }
 
 
@@ -47,6 +51,7 @@ SPELLINGS = {
     "mm": ("millimeter", "millimeters", "millimetre", "millimetres"),
     "in": ("inch", "inches", '"'),
     "N": ("newton", "newtons"),
+    "A": ("amp", "amps", "ampere", "amperes"),
     "N m": ("newton-meter", "newtonmeter", "newtonmeters"),
     "lbf": ("lb", "lbs"),
     "lbf in": ("lb-in", "in-lb", "inlbf"),

@@ -14,16 +14,10 @@ from ..signals import Bump
 from .equation_error import Start, estimate
 
 
-def as_base_motion(record: Record) -> Record:
-    """A drive with both encoders as the joint sees it: the base x is the motor behind its gear, y is the link."""
-    channels = {"x": record.channels["motor"] / record.ratio, "y": record.channels["link"]}
-    return Record(record.t, channels, record.path, confirmed=frozenset({"t", "x", "y"}))
-
-
 def inertias(record: Record) -> tuple[float, float, float]:
-    """Motor inertia [kg m^2] and viscous friction [N m s/rad] at its shaft, and inertia of the link [kg m^2], both encoders known.
+    """Inertia [kg m^2] and viscous friction [N m s/rad] of the motor at its shaft, and inertia of the link [kg m^2].
 
-    Source: least squares on the balance of the whole under bumps that carry the derivatives.
+    Both encoders are there. Least squares on the balance of the whole under bumps that carry the derivatives.
     """
     bump = Bump(record.samples, record.dt)
     motor, link = record.channels["motor"], record.channels["link"]
@@ -52,4 +46,4 @@ def start_of_drive(record: Record) -> tuple[tuple[float, float], Start]:
     record : of a drive with an encoder on motor and link
     """
     motor_inertia, friction, inertia = inertias(record)
-    return (motor_inertia, friction), estimate(as_base_motion(record), inertia=inertia)
+    return (motor_inertia, friction), estimate(record.on_its_base(), inertia=inertia)

@@ -69,6 +69,8 @@ def pictures(found: Fit | Comparison) -> list[Panel]:
     ]
     if one.record.observed_name == "T":
         return [_loop_panel(found), *panels]
+    if one.record.relative is None:
+        return panels
     where = "The play lies between the two lines: no contact there. " if one.edges else ""
     said = f"{where}Relative position against relative speed, measured."
     panels.append(Panel("Phase plane", said, svg_of(plot.phase_plane, found), "phase"))

@@ -28,6 +28,7 @@ from ..parameters import unit_text, values, with_values
 from ..pointwise import along
 from ..precision import require_double_precision
 from ..records import Record
+from ..records.prescribed import require_prescribed
 from ..shooting.multiple_shooting import Blocks, Trajectory
 from ..shooting.problem import Problem, Unknowns
 from ..showing import Shown
@@ -150,6 +151,7 @@ def missing_torque(fit: Fit, *, hold: bool = False) -> Latent:
     >>> print(jb.missing_torque(fit))
     A torque of ... N m rms is missing, known to ...
     """
+    require_prescribed(fit.records, "missing_torque")
     if fit.problem is None or fit.unknowns is None:
         return missing_torque_of(
             fit.system, fit.records[0], hold=hold, translational=fit.translational, per_inertia=fit.per_inertia

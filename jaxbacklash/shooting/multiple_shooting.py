@@ -59,7 +59,8 @@ class Blocks(eqx.Module):
 
 
 class Prediction(eqx.Module):
-    """What one window predicts: ``motion`` (M,) measured channel, of C channels (M C,), ``input`` (R,) spline as `Windows.shown`, ``end`` (n,)."""
+    """What one window predicts: ``motion`` (M,) measured channel, or (M C,) of several, ``input`` (R,) spline as `Windows.shown`,
+    ``end`` (n,)."""
 
     motion: Array
     input: Array

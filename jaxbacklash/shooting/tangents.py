@@ -159,7 +159,7 @@ def rows(
     w: Windows, rebuild: Any, theta: Array, active: Array, states: tuple[Array, ...], u: Array, du: Array, basis: Array,
     lagged: Array | None,
 ) -> tuple[Array, Array]:  # fmt: skip
-    """Derivatives of the measured channels at the samples, (W, n + L + q, M C), and of the end of every window, (W, n + L + q, n).
+    """Derivatives of the C measured channels at the samples, (W, n + L + q, M C), and of the ends of windows, (W, n + L + q, n).
 
     ``states`` (W, P) at panel edges, ``u`` and ``du`` (W, P+1); ``basis`` and ``lagged`` as `chain` takes them.
     """

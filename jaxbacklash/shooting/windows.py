@@ -45,17 +45,16 @@ class Windows(eqx.Module):
     """Arrays of W windows with M samples and P panels each, and m spline coefficients per window (m = 0: no input, or a
     rough force that is taken as exact, straight between its samples).
 
-    ``t0`` (W,) start times [s]; ``measured`` (W, M); ``weight`` (W, M), 1/noise or 0 where there is no sample;
-    ``tie`` (W,), 1 where the window runs on into the next; ``input`` (W, R) measured input and ``input_weight`` (W, R), R = M
-    samples and m - 1 knots where its spline is to have no corner; ``shown`` (R, m+5) what the coefficients come to there;
-    ``force`` (W, P+1) exact force at panel edges; ``coefficients`` (W, m) start of the spline; ``basis`` (6, P+1, m+5)
-    the splines and their derivatives at panel edges; ``starts`` (2, W) position and speed of the link from the smoothed data;
-    ``drop`` (2,) how sharply ends tie to starts [1/rad, s/rad]; ``used`` how many windows, the first ones, hold
-    data; ``told`` () how much of the variance that ``input_weight`` stands for the input shows, 1 but for one as good as exact,
-    which is given a little noise; ``by_force`` True when the spline is of the force, ``by_torque`` when it is of the torque at the motor
-    of a drive: then it is of degree 0, one coefficient a sample, for as long as the controller holds the torque. Of C channels
-    ``measured`` and ``weight`` are (W, M C), the channels of a sample together; ``starts`` and ``drop`` then have the motor's
-    position and speed behind those of the link.
+    ``t0`` (W,) start times [s]; ``measured`` (W, M); ``weight`` (W, M), 1/noise or 0 where there is no sample; ``tie`` (W,), 1
+    where the window runs on into the next; ``input`` (W, R) measured input and ``input_weight`` (W, R), R = M samples and m - 1
+    knots where its spline is to have no corner; ``shown`` (R, m+5) what the coefficients come to there; ``force`` (W, P+1) exact
+    force at panel edges; ``coefficients`` (W, m) start of the spline; ``basis`` (6, P+1, m+5) the splines and their derivatives
+    at panel edges; ``starts`` (2, W) position and speed of the link from the smoothed data; ``drop`` (2,) how sharply ends tie to
+    starts [1/rad, s/rad]; ``used`` how many windows, the first ones, hold data; ``told`` () how much of the variance that
+    ``input_weight`` stands for the input shows, 1 but for one as good as exact, which is given a little noise; ``by_force`` True
+    when the spline is of the force, ``by_torque`` when it is of the torque at the motor of a drive: then it is of degree 0, one
+    coefficient a sample, for as long as the controller holds the torque. Of C channels ``measured`` and ``weight`` are (W, M C),
+    the channels of a sample together; ``starts`` and ``drop`` then have the motor's position and speed behind those of the link.
     """
 
     t0: Array
@@ -97,8 +96,8 @@ class Windows(eqx.Module):
 class Layout(eqx.Module):
     """Where each record sits among the windows, and what its noise is; plain numbers for reports.
 
-    ``channels`` names of the measured channels where there are several, as they lie in a sample; ``beside``, per record, the noise
-    of the other encoder of a drive that has two [rad].
+    ``channels`` names of the measured channels where there are several, as they lie in a sample; ``beside``, per record, the
+    noise of the other encoder of a drive that has two [rad].
     """
 
     first: tuple[int, ...] = eqx.field(static=True)

@@ -12,7 +12,7 @@ and at ports that are at rest, :math:`a_p \dot q = 0`, the same holds of the acc
 and a port sticks whose :math:`a_p \ddot q` is zero there. That is decided where a step begins and kept to the step's end: the
 first event ahead, an edge of the play or a speed that comes to zero. What the prediction misses is put right afterwards.
 
-Source: Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988), on friction as this problem of least action.
+Source: Moreau, Unilateral contact and dry friction in finite freedom dynamics (1988), on friction as such a least problem.
 """
 
 from __future__ import annotations

@@ -120,9 +120,7 @@ def _stopped(p, v, most):
 def _step(p, q, tau, h, before):
     """One step of length h: q is th, dth, y, dy, changed in place; ``before`` the accelerations of the last step, likewise."""
     th, dth, y, dy = q
-    middle = _torques(
-        p, th + 0.5 * h * dth, dth + 0.5 * h * before[0], y + 0.5 * h * dy, dy + 0.5 * h * before[1], tau
-    )
+    middle = _torques(p, th + 0.5 * h * dth, dth + 0.5 * h * before[0], y + 0.5 * h * dy, dy + 0.5 * h * before[1], tau)
     free = np.array([dth + h * middle[0] / p[JM], dy + h * middle[1] / p[J]])
     most = np.array([h * p[TC_MOTOR], h * p[TC_GROUND], h * (p[TC_JOINT] + p[MU] * middle[2])])
     new_th, new_y = free

@@ -37,12 +37,12 @@ FIRST = 12
 
 
 def answers(t: np.ndarray, channels: Mapping[str, Channel]) -> list[Finding]:
-    """What the observed channel (z, y or T) lacks."""
-    name = next((one for one in ("z", "y", "T") if one in channels), None)
+    """What the observed channel (z, y or T, link or motor of a drive) lacks."""
+    name = next((one for one in ("z", "y", "T", "link", "motor") if one in channels), None)
     if name is None:
         return []
     channel = channels[name]
-    drive = next((one for one in ("x", "F") if one in channels), None)
+    drive = next((one for one in ("x", "F", "torque") if one in channels), None)
     found = _nothing(channel, name, drive)
     if found:
         return found

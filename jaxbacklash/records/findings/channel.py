@@ -11,7 +11,7 @@ from jaxbacklash.side_by_side import side_by_side
 
 from .local import EVERY, MEDIAN, RANKS, SHARE, SURPRISE_OF_NOISE, common_step, level, surprise, within
 
-POSITIONS = ("x", "y", "z")
+POSITIONS = ("x", "y", "z", "motor", "link")
 """Channels of things that have mass, and so neither jump nor stand out for a single sample; forces may."""
 
 LONG = 200_000

@@ -10,7 +10,7 @@ import numpy as np
 from jaxbacklash.records.finding import WARN, Finding
 from jaxbacklash.records.options import ReadOptions
 
-from . import answers, held_values, jumps, limits, mend, quantities, relations, spikes, stamps
+from . import answers, drives, held_values, jumps, limits, mend, quantities, relations, spikes, stamps
 from .channel import Channel, by_name
 from .rules import silenced
 
@@ -70,7 +70,7 @@ def find(
     found += new
     for whole in (
         lambda: limits.clipped(looked_at) or held_values.held_rows(looked_at) or jumps.shifts(t, looked_at),
-        lambda: relations.relations(channels, extras),
+        lambda: relations.relations(channels, extras) or drives.drives(channels, options),
         lambda: answers.answers(t, looked_at),
     ):
         if not _waiting(found):

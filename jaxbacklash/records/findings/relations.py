@@ -47,7 +47,7 @@ FAST = 512
 """Samples are taken in whole numbers of so many: a Fourier transform whose length has large prime factors is ten times slower."""
 
 Gain = tuple[int, float, complex]
-"""First line, coherence and gain of an octave, see `_gains`."""
+"""First line, coherence and gain of an octave, see `octave_gains`."""
 
 
 def relations(channels: Mapping[str, np.ndarray], extras: Mapping[str, np.ndarray]) -> list[Finding]:
@@ -58,10 +58,10 @@ def relations(channels: Mapping[str, np.ndarray], extras: Mapping[str, np.ndarra
     if z is not None and y is not None and y.dtype.kind == "f" and np.isfinite(y).all():
         return _three(x, y, z)
     if y is not None and "y" in channels:
-        return _following(_gains(x, y))
+        return _following(octave_gains(x, y))
     if z is None:
         return []
-    gains = _gains(x, z)
+    gains = octave_gains(x, z)
     return _taken_for_y(gains) or _turned(gains)
 
 
@@ -93,7 +93,7 @@ def _three(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> list[Finding]:
 
 
 def _following(gains: list[Gain]) -> list[Finding]:
-    """A y that follows x in slow motion, but smaller, larger or the other way; ``gains`` are those from x to y."""
+    """A y that follows x in slow motion, but smaller, larger or the other way; ``octave_gains`` are those from x to y."""
     gain, open_ = slow_gain(gains) or (1.0, 0.0)
     if 1 / LIKE_ONE < gain < LIKE_ONE:
         return []
@@ -102,14 +102,14 @@ def _following(gains: list[Gain]) -> list[Finding]:
         return [Finding("sign", ASK, "y", what, "--sign y", size=gain)]
     ratio = 1.0 / gain
     what = f"follows x at {gain:.3g}, to within {100 * open_:.0f} %, in slow motion, as behind a gear or in another unit"
-    gear = f"--ratio {_of_teeth(ratio):.4g}"
+    gear = f"--ratio {of_teeth(ratio):.4g}"
     unit = next((said for per_radian, said in UNITS.items() if abs(ratio / per_radian - 1.0) < NEAR), "")
     if unit:
         return [Finding("gear", ASK, "y", what, f"--unit {unit}", size=gain, otherwise=gear)]
     return [Finding("gear", ASK, "y", what, gear, size=gain)]
 
 
-def _of_teeth(ratio: float) -> float:
+def of_teeth(ratio: float) -> float:
     """The simplest ratio of a gear near a measured one: whole before halves (5:2), thirds (4:3) and quarters."""
     for parts in range(1, 5):
         simple = round(parts * ratio) / parts
@@ -119,7 +119,7 @@ def _of_teeth(ratio: float) -> float:
 
 
 def _taken_for_y(gains: list[Gain]) -> list[Finding]:
-    """A z that follows x as the link itself does; ``gains`` are those from x to z."""
+    """A z that follows x as the link itself does; ``octave_gains`` are those from x to z."""
     gain, _ = slow_gain(gains) or (0.0, 0.0)
     if not 1 / LIKE_ONE < gain < LIKE_ONE:
         return []
@@ -128,7 +128,7 @@ def _taken_for_y(gains: list[Gain]) -> list[Finding]:
 
 
 def _turned(gains: list[Gain]) -> list[Finding]:
-    """A z that grows against x with the frequency; ``gains`` are those from x to z.
+    """A z that grows against x with the frequency; ``octave_gains`` are those from x to z.
 
     Below the resonance z = y - x goes with x and grows as the square of the frequency. Above it, or where the link floats in its
     play, it goes against x but falls towards -x.
@@ -161,7 +161,7 @@ def slow_gain(gains: list[Gain]) -> tuple[float, float] | None:
     return float(slow.real), max(NEAR, abs(float(next_.real / slow.real) - 1.0))
 
 
-def _gains(x: np.ndarray, y: np.ndarray) -> list[Gain]:
+def octave_gains(x: np.ndarray, y: np.ndarray) -> list[Gain]:
     """First line, coherence and gain from x to y of every octave that holds a hundredth of x's power."""
     size = min(x.size, SAMPLES)
     size -= size % FAST if size > 4 * FAST else 0

@@ -81,6 +81,13 @@ RULES: dict[str, Rule] = {
         ASK,
         "--sign",
     ),
+    "no-ratio": Rule("a drive without the turns of its motor for a turn of the link", "none said", ASK, "--ratio"),
+    "wrong-ratio": Rule(
+        "a link that follows the motor of a drive at another ratio than was said",
+        "as for a gear",
+        ASK,
+    ),
+    "turned-link": Rule("a link that turns against the motor of its drive", "as for a gear", ASK, "--sign"),
     "absolute": Rule("z that follows x one to one in slow motion: it is y", "as for a gear", ASK),
     "contradiction": Rule("x, y and z all present, z not y - x", "a tenth of z's own standard deviation", WARN),
     "axes": Rule(
