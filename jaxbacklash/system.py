@@ -149,7 +149,9 @@ class System(eqx.Module):
 
     def held_off(self, t: Scalar, state: State, drive: Drive, side: Scalar | None) -> tuple[State, dict[str, Scalar]]:
         """`rates` without dry friction, and by port the torque that it can hold there [N m]."""
-        free = {f"slip_{of}": 0.0 for of, port in (("z", "joint"), ("y", "ground"), ("th", "motor")) if port in self.slides}
+        free: dict[str, Any] = {
+            f"slip_{of}": 0.0 for of, port in (("z", "joint"), ("y", "ground"), ("th", "motor")) if port in self.slides
+        }
         now = replace(self.instant(t, state, drive, side), **free)
         capacity: dict[str, Any] = dict.fromkeys(self.rows, jnp.zeros_like(now.y))
         for name, own in self._own_states(state):

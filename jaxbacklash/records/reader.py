@@ -11,6 +11,7 @@ import warnings
 from collections.abc import Collection, Mapping
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -152,9 +153,10 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
     t, channels, extras = after(t, channels, extras, findings)
     if options.resample:
         t, channels, extras = _even(t, channels, extras, options, where)
-    told = {"ratio": options.ratio or 1.0, "per_kt": "current" in picked.channels and options.kt is None}
-    geared = told if "torque" in channels else {}
-    record = Record(t, channels, where, extras, _confirmed(picked, options), tuple(findings), **geared)
+    gear: dict[str, Any] = {"ratio": options.ratio or 1.0, "per_kt": "current" in picked.channels and options.kt is None}
+    record = Record(
+        t, channels, where, extras, _confirmed(picked, options), tuple(findings), **(gear if "torque" in channels else {})
+    )
     undriven(record, table, picked, options)
     return record
 

@@ -98,7 +98,7 @@ def _places(n: int, m: int, nodes: int) -> tuple[np.ndarray, np.ndarray]:
 
 def _locals(s: Smoother, at: Point) -> tuple[Array, Array]:
     following = jnp.concatenate([at.torque[1:, :1], jnp.zeros_like(at.torque[:1, :1])])
-    return local_coefficients(at.problem.windows, at.unknowns.coefficients), jnp.concatenate([at.torque, following], axis=1)
+    return local_coefficients(s.problem.windows, at.unknowns.coefficients), jnp.concatenate([at.torque, following], axis=1)
 
 
 def linearise(s: Smoother, at: Point) -> Blocks:

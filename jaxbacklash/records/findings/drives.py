@@ -15,6 +15,9 @@ from jaxbacklash.records.options import ReadOptions
 
 from .relations import LIKE_ONE, octave_gains, of_teeth, slow_gain
 
+GOES_ALONG = 0.9
+"""Share of the link's power that goes with the motor's from which on the two tell the gear between them."""
+
 
 def drives(channels: Mapping[str, np.ndarray], options: ReadOptions) -> list[Finding]:
     """What is odd about motor and link of a drive; ``channels`` of arrays (N,), in rad and N m."""
@@ -47,4 +50,10 @@ def _shown(channels: Mapping[str, np.ndarray]) -> float | None:
     if not {"motor", "link"} <= set(channels):
         return None
     found = slow_gain(octave_gains(channels["motor"], channels["link"]))
-    return None if found is None or found[0] == 0.0 else 1.0 / found[0]
+    if found is not None:
+        return 1.0 / found[0] if found[0] else None
+    # A few sines fill no two octaves; where nearly all of the link's motion goes with the motor's, that tells as well.
+    motor, link = (channels[name] - np.mean(channels[name]) for name in ("motor", "link"))
+    together = float(motor @ link)
+    share = together**2 / max(float(motor @ motor) * float(link @ link), 1e-300)
+    return float(motor @ motor) / together if share > GOES_ALONG else None
