@@ -201,8 +201,8 @@ def _joint_reasons(
     assert system.contact is not None
     stiffness = float(system.contact.stiffness)
     if all(r.relative is None and r.kind == "drive" for r in records):
-        clear = stiffness > CLEAR * stderr.get("stiffness", 0.0) and np.isfinite(stderr.get("stiffness", 0.0))
-        why = f"the torque does not show a contact: its stiffness is not clear of zero by {CLEAR:g} standard errors"
+        clear = stiffness > SURE * stderr.get("stiffness", 0.0) and np.isfinite(stderr.get("stiffness", 0.0))
+        why = f"the torque does not show a contact: its stiffness is not clear of zero by {SURE:g} standard errors"
         return {} if clear else {name: (UNDETERMINED, why) for name in ("backlash", "stiffness")}
     touch = [contacts(r, low, high) for r in records]
     above, below = max(c.above for c in touch), max(c.below for c in touch)

@@ -22,8 +22,8 @@ from ..records.force import force_edges, way
 from ..sharing import sharing
 from ..signals import DEGREE, NEGLIGIBLE, SPAN, choose_intervals, fit_spline, knots, noise_level, noise_of_differences
 from .chunks import CHUNK
-from .held import channel_noise, held_basis, torque_noise
 from .lengths import LONGEST_PANEL
+from .torque_input import channel_noise, held_basis, torque_noise
 
 Array = Any
 LEAST_INTERVALS = 8
