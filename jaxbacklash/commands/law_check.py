@@ -23,7 +23,7 @@ from ..parameters import Spec, ravel, specs, unravel
 from ..system import System
 from .law_errors import line_in, named
 
-PORTS = ("joint", "ground")
+PORTS = ("joint", "ground", "motor")
 UNKNOWN = "numbers that are not known while the law is compiled"
 METHODS = ("torque", "dry", "rate", "start", "reshape", "drift", "rubs", "observe", "lag")
 """What a law may override, all of it traced."""
@@ -67,7 +67,7 @@ def check_law(cls: type[AbstractEffect], path: Path, where: str) -> None:
 def _check_declaration(cls: type[AbstractEffect], law: str) -> None:
     """Class attributes and the descriptions of the parameters."""
     if cls.port not in PORTS:
-        raise BadInput(f'{law}: port is {cls.port!r}, wanted "joint" or "ground"')
+        raise BadInput(f'{law}: port is {cls.port!r}, wanted "joint", "ground" or "motor"')
     if not isinstance(cls.states, tuple) or not all(isinstance(name, str) and name.isidentifier() for name in cls.states):
         raise BadInput(f'{law}: states is {cls.states!r}, wanted a tuple of names such as ("s",)')
     for field in dataclasses.fields(cls):

@@ -30,7 +30,7 @@ def with_friction_widths(problem: Problem, widths: dict[str, float]) -> Problem:
             base[names.index(f"{law}.width")] = width
     # Smooth at both ports: so is friction that is only judged, and no other program is compiled.
     widened = eqx.tree_at(lambda p: p.base, problem, base)
-    return replace(widened, system=replace(problem.system, smoothed=("joint", "ground", "motor")))
+    return replace(widened, system=replace(problem.system, smoothed=tuple(problem.system.rows)))
 
 
 def sliding_speeds(problem: Problem) -> dict[str, float]:
