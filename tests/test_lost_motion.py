@@ -1,5 +1,7 @@
 """The play of slow records, against motions whose play is known by construction and a simulation of its own."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -250,3 +252,16 @@ def test_means_in_cells_are_those_of_the_samples(monkeypatch):
     assert parts.mean_of(function, values) == pytest.approx(parts.mean(function(values)))
     assert parts.size.sum() == np.count_nonzero(values > -1.0)
     assert np.average(parts.mean(values), weights=parts.size) == pytest.approx(values[values > -1.0].mean())
+
+
+@pytest.mark.shared
+@pytest.mark.parametrize("name", ["q01", "q02", "q03", "q05", "q06"])
+def test_records_with_dynamics_get_no_number_and_no_bound(shared, name):
+    """Drives that swing, whose play is 6 to 17 mrad: read as slow ones they would seem to have none."""
+    path = shared / "records_drives" / name
+    if not path.exists():
+        pytest.skip("the practice records of drives are not here")
+    table = np.genfromtxt(path / "train.csv", delimiter=",", names=True)
+    ratio = json.loads((path / "answer.json").read_text())["ratio"]
+    found = refused(jb.Record(table["t"], {"x": table["motor"] / ratio, "y": table["link"]}), "inertia", gear_ratio=ratio)
+    assert "less than" not in found.parameters["backlash"].why

@@ -104,9 +104,9 @@ def _read(
     around = over_angle(z, -where.side, driver, parts, fits)
     noise = float(np.sqrt(np.average(fits.fit.left**2, weights=parts.size)))
     conditions = (
-        *first, no_lag(found, fits, float(t[1] - t[0])),
+        *first, at_edges(noise, width, _by_noise(z[used], counts, parts), float(np.std(parts.mean(z)))),
+        no_lag(found, fits, float(t[1] - t[0])),
         clear_of_counts(width, low, high, max(counts), float(np.ptp(parts.mean(z)))),
-        at_edges(noise, width),
         stays_put(driver, follower, way, min(width, found.travel)), at_one_edge(z, way, found, width),
     )  # fmt: skip
     extra = {name: (*fits.coefficient(name), fits.freedom) for name in fits.names if name == "torque"}
@@ -121,6 +121,11 @@ def _turning(way: Passes, count: float) -> np.ndarray:
     """Samples just before a turning point, (N,): within so few counts of it the encoder's steps do not average out."""
     stroke = way.strokes[way.number]
     return stroke - way.travel < np.minimum(SLOW_COUNTS * count, 0.2 * stroke)
+
+
+def _by_noise(z: np.ndarray, counts: tuple[float, ...], parts: Cells) -> float:
+    """By how much a cell's mean would scatter for noise and counts alone."""
+    return float(np.hypot(rough_noise(z), max(counts) / np.sqrt(12.0)) / np.sqrt(np.median(parts.size)))
 
 
 def _torque(torque: np.ndarray | None, used: np.ndarray) -> dict[str, np.ndarray] | None:

@@ -68,7 +68,8 @@ def pulled(
     notes = ("z goes against the force: one of the two has the other sign",) if fits.width + reach < 0.0 else ()
     conditions = (
         *first, _at_rest(moved, width),
-        clear_of_counts(width, width - reach, width + reach, max(counts)), at_edges(noise, width),
+        clear_of_counts(width, width - reach, width + reach, max(counts)),
+        at_edges(noise, width, rough_noise(z[used]) / float(np.sqrt(np.median(parts.size))), float(np.std(z[used]))),
     )  # fmt: skip
     return Reading(
         "pulled", conditions, count, width, stderr, (width - reach, width + reach), fits.freedom,

@@ -19,6 +19,8 @@ motion; what a lag leaves over what play does, down to which the two are not tol
 DRAGGED, IN_STEP = 0.02, 0.98
 """Share of the drive's way that a link which stands in its play may be dragged; correlation with the drive of one that is
 geared."""
+BEYOND_NOISE, OF_MOTION = 6.0, 0.2
+"""How much more than noise z may scatter about its levels where these lie close together, and what share of all that it does."""
 EARLY = 0.35
 """Share of the lost motion by which z may leave its edge before the drive turns."""
 OTHERWISE = 4.0
@@ -95,13 +97,14 @@ def clear_of_counts(width: float, low: float, high: float, count: float, ranges:
     return Condition("play above noise", False, said, why, "record more and slower strokes, of several lengths")
 
 
-def at_edges(noise: float, width: float) -> Condition:
-    """Whether z stays at its two levels."""
+def at_edges(noise: float, width: float, by_noise: float, moves: float) -> Condition:
+    """Whether z stays at its two levels: averages scatter about them by ``noise``, would by ``by_noise`` for noise
+    alone, and ``moves`` is the standard deviation of z itself."""
     share = noise / max(0.5 * abs(width), 1e-300)
     said = f"z scatters by {noise:.3g} about its levels, {share:.2g} of half their distance"
-    if share <= AT_EDGE:
+    if share <= AT_EDGE or noise <= max(BEYOND_NOISE * by_noise, OF_MOTION * moves):
         return Condition("z stays at an edge", True, said)
-    why = "z does not stay at two levels: something else than the direction moves it, such as inertia, a varying load or noise"
+    why = "z does not stay at two levels: something else than the direction moves it, such as inertia, a varying load or a drift"
     return Condition("z stays at an edge", False, said, why, "move more slowly, or fit the dynamics with jaxbacklash fit")
 
 
