@@ -167,6 +167,11 @@ def unit_text(unit: str, *, translational: bool = False, per_inertia: bool = Fal
     return _TRANSLATIONAL.get(unit, unit) if translational else unit
 
 
+def per_kt(unit: str) -> str:
+    """A unit of a torque, or of what goes with one, where the torque is a current whose N m for an ampere nobody told."""
+    return f"{unit} per N m/A" if _PER_INERTIA.get(unit, unit) != unit and unit not in ("rad", "rad/s") else unit
+
+
 def channel_unit(name: str, *, translational: bool = False) -> str:
     """The unit of a channel of a record: of a force for ``F`` and ``T``, of a motion for the others."""
-    return unit_text("N m" if name in ("F", "T") else "rad", translational=translational)
+    return unit_text("N m" if name in ("F", "T", "torque") else "rad", translational=translational)

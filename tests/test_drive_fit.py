@@ -119,11 +119,15 @@ def test_what_does_not_take_drives_says_so(work):
         work(one)
 
 
-def test_one_encoder_is_refused_without_a_model_to_start_from():
-    _, record = quick()
+def test_one_encoder_is_refused():
+    rig, record = quick()
     one = jb.Record(record.t, {n: record.channels[n] for n in ("torque", "motor")}, "run.csv", ratio=50.0)
     with pytest.raises(jb.BadInput, match="is a drive with an encoder on the motor alone"):
         jb.fit(one)
+    with pytest.raises(jb.BadInput, match="is a drive with an encoder on the motor alone"):
+        jb.fit(one, system=rig)
+    with pytest.raises(jb.BadInput, match="is a drive with an encoder on the motor alone"):
+        jb.compare(rig, one)
 
 
 def test_a_comparison_wants_both_of_a_drive():
@@ -158,3 +162,26 @@ def test_model_files_that_are_no_drive(text, said, tmp_path):
     file.write_text(f"[model]\n{text}\n")
     with pytest.raises(jb.BadInput, match=said):
         jb.load_model(file)
+
+
+@pytest.mark.slow
+def test_without_kt_everything_is_per_kt():
+    rig, record = quick()
+    current = jb.Record(record.t, record.channels | {"torque": record.channels["torque"] / 0.1}, ratio=50.0, per_kt=True)
+    fit = jb.fit(current, system=rig_per(rig, 0.1), free=("inertia", *WITH_KT), starts=1)
+    assert fit.parameters["stiffness"].unit == "N m/rad per N m/A"
+    assert fit.parameters["motor_inertia"].unit == "kg m^2 per N m/A"
+    assert fit.parameters["backlash"].unit == "rad"
+    assert float(fit.parameters["stiffness"].value) == pytest.approx(1500.0 / 0.1, rel=1e-3)
+    assert "per N m/A of the motor" in str(fit)
+
+
+WITH_KT = ("backlash", "stiffness", "damping", "motor_inertia", "motor_damping")
+
+
+def rig_per(rig, kt):
+    """A drive whose torques and inertias are those of ``rig`` over kt."""
+    from jaxbacklash.parameters import values, with_values
+
+    scaled = ("inertia", "stiffness", "damping", "motor_inertia", "motor_damping")
+    return with_values(rig, {name: value / kt for name, value in values(rig).items() if name in scaled})

@@ -13,6 +13,7 @@ from ..causes import Cause, find_causes
 from ..errors import BadInput
 from ..fitting import Fit
 from ..fitting import fit as fit_records
+from ..fitting.result import WITHOUT_KT
 from ..fitting.result import text as fit_text
 from ..fitting.setup import add_effects
 from ..model_file import dump_model
@@ -74,6 +75,7 @@ def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, *, silent
         tell("drawing the report", 0.95)
         write_text(folder / "result.json", text)
         heading = f"{found.records[0].summary()}\n{result['verdict_text']}"
+        heading += f"\n{WITHOUT_KT}" if found.records[0].per_kt else ""
         write_text(
             folder / "model.toml",
             dump_model(

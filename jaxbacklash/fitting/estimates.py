@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from scipy.special import ndtri
 
-from ..parameters import specs, unit_text, values
+from ..parameters import per_kt, specs, unit_text, values
 from ..quasistatic import slow_reading, why_not
 from ..records import Record
 from ..regression.force_loop import NOTHING
@@ -165,6 +165,7 @@ def judge(
     for name in free:
         spec, error = described[name], stderr[name]
         unit = unit_text(spec.unit, translational=translational, per_inertia=per_inertia)
+        unit = per_kt(unit) if records[0].per_kt else unit
         value = present[name]
         verdict, why = reasons.get(name, (FOUND, ""))
         if verdict == FOUND and not np.isfinite(error):

@@ -21,6 +21,8 @@ from .counts import few_counts
 from .estimates import Estimate, line
 from .score import Score, error_in_words
 
+WITHOUT_KT = "no --kt was given: inertias, stiffness, damping and torques are per N m/A of the motor"
+"""What is said of a drive whose current stands for its torque."""
 DOUBTED = "only if the model is right: it is not, see the verdict"
 """What stands beside every standard error of a fit that misses its record by more than chance, in place of an interval."""
 
@@ -136,7 +138,7 @@ def text(fit: Fit, causes: Sequence[Named] = ()) -> str:
     for number_of, (record, score, noise, moved) in enumerate(zip(fit.records, fit.scores, fit.noise, fit.input_noise)):
         lines.append(record.summary())
         driver = record.input_name or "x"
-        unit = channel_unit(driver, translational=fit.translational)
+        unit = "A" if record.per_kt else channel_unit(driver, translational=fit.translational)
         name = record.observed_name
         own = channel_unit(name, translational=fit.translational)
         beside = f", of {driver} {at_most(fit, driver, number_of)}{moved:.3g} {unit}" if moved else ""
@@ -150,6 +152,8 @@ def text(fit: Fit, causes: Sequence[Named] = ()) -> str:
     lines.append(f"model: {fit.model}; effects added: {effects}")
     if fit.per_inertia:
         lines.append("no inertia was given: stiffness, damping and torques are per unit inertia")
+    if fit.records[0].per_kt:
+        lines.append(WITHOUT_KT)
     note = doubt(fit)
     lines += [line(estimate, note) for estimate in fit.parameters.values()]
     lines += _correlations(fit)

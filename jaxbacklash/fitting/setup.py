@@ -76,15 +76,11 @@ def drive_system(
     Raises
     ------
     BadInput
-        A model without a play, or a record whose encoders do not tell where to begin.
+        A model without a play, or a record of one encoder.
     """
     if model != "joint":
         raise BadInput(f"--model {model}: a drive (torque with motor or link) is fitted as a joint with play; leave --model out")
-    if len(record.observed_names) < 2:
-        raise BadInput(
-            f"{record.path or 'the record'}: is a drive with an encoder on the {record.observed_names[0]} alone; fits of drives "
-            "begin from an encoder on motor and link so far; wanted both columns, or a model file to start from"
-        )
+    check_encoders([record])
     (motor_inertia, friction), start = start_of_drive(record)
     if inertia is not None:
         start = replace(start, inertia=inertia)
@@ -93,6 +89,22 @@ def drive_system(
                    observed=" ".join(record.observed_names))  # fmt: skip
     system = add_effects(joint, effects)
     return system, (() if inertia is not None else ("inertia",)) + free_names(system), start
+
+
+def check_encoders(records: Sequence[Record]) -> None:
+    """Refuse drives with one encoder: what the other would show is not searched for so far.
+
+    Raises
+    ------
+    BadInput
+        With the encoder that there is.
+    """
+    for record in records:
+        if record.kind == "drive" and len(record.observed_names) < 2:
+            raise BadInput(
+                f"{record.path or 'the record'}: is a drive with an encoder on the {record.observed_names[0]} alone, not "
+                "fitted so far; wanted columns motor and link"
+            )
 
 
 def stick_slip_system(
