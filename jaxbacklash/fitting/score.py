@@ -22,7 +22,7 @@ from ..shooting.problem import Problem, Unknowns
 from ..shooting.windows import Layout
 from ..showing import Shown
 from .continuation import tied
-from .settings import CLEARLY, FURTHER, JOINED, LAST, LOOSE, NEAR
+from .settings import BETWEEN, CLEARLY, FURTHER, JOINED, LAST, LOOSE, NEAR
 from .setup import first_guess
 
 kept_residuals = kept_jit(residuals)
@@ -154,7 +154,7 @@ def score(
     begin = Unknowns(np.zeros(unknowns.theta.shape), unknowns.starts, unknowns.coefficients)
     near = NEAR * max(1, int(problem.windows.used))
     # An error of a model that is clearly wrong is quoted to three digits: its starts need not creep on for a fourth.
-    how = Levenberg(atol=near, rtol=CLEARLY, damping=1e-6, limit=LAST)
+    how = Levenberg(atol=near, rtol=CLEARLY, damping=1e-6, limit=BETWEEN if begin.starts.shape[0] == 2 else LAST)
     still = tied(still, JOINED)
     solution = minimise(still, begin, how)
     if float(solution.stats["promise"]) > FURTHER * float(solution.stats["cost"]):

@@ -54,7 +54,8 @@ FINER = 10.0
 FALLEN = 3.0
 """Fall of the evidence below its highest from which on tighter ties are not tried [ln L]: a likelihood of a twentieth."""
 BETWEEN, LAST = 15, 40
-"""Steps of a fit with ties looser than `SHARP`, and of one with those or tighter ones, or of a score."""
+"""Steps of a fit with ties looser than `SHARP`, and of one with those or tighter ones; also of a score without a law that
+remembers, and with one."""
 ROUGHLY, CLOSELY = 0.3, 1e-2
 """How near to the minimum a fit on the way comes, and the last one [ln L]: half the square of the standard errors by which a
 parameter may be off."""
