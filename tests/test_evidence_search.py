@@ -52,5 +52,5 @@ def test_friction_that_gives_is_named():
 
 @pytest.mark.slow
 def test_a_torque_outside_the_catalogue_is_left_out_and_said():
-    _, model, *_ = searched("unknown_disturbance", "multisine", 7, 10.0)
+    _, model, *_ = searched("rumble", "multisine", 7, 10.0)
     assert not model.tied

@@ -52,8 +52,15 @@ def score_test(builder: ModelBuilder, model: FittedModel, names: Iterable[str]) 
     list of Candidate
         Their gains are divided by ``model.deflation``.
     """
-    shapes = {n: shaped(builder, model, n) for n in names}
-    return [c for group in _groups(builder, model, shapes) for c in _score(builder, model, shapes, group)]
+    found: dict[str, Candidate] = {}
+    shapes = [(n, effect) for n in names for effect in shaped(builder, model, n)]
+    each = float(np.log(builder.record.samples))
+    for group in _groups(model, shapes):
+        for one in _score(builder, model, group):
+            known = found.get(one.name)
+            if known is None or one.gain - each * one.parameters > known.gain - each * known.parameters:
+                found[one.name] = one
+    return list(found.values())
 
 
 def share_of_rest(model: FittedModel, gain: float) -> float:
@@ -66,16 +73,15 @@ def rubs(law: type[AbstractEffect]) -> bool:
     return bool(law.states and law.family) or (law.slides and law.port == "joint" and not law.beside)
 
 
-def shaped(builder: ModelBuilder, model: FittedModel, name: str) -> AbstractEffect:
-    """The law at its null strength, at the likeliest of the shapes it may have."""
+def shaped(builder: ModelBuilder, model: FittedModel, name: str) -> list[AbstractEffect]:
+    """The law at its null strength, at the likeliest of the shapes it may have; at a phase that most rigs have too."""
     law, form = builder.laws[name], builder.weak_form
     if law.wave is None or form.blind:
         guesses = law.guesses(model.system, form.motion)
-    else:
-        guesses = [read_off(form, model.system, model.free, law)]
-        if specs(guesses[0])[law.wave.phase].usual is not None:
-            guesses = [law(**{law.wave.strength: 1.0}), *guesses]
-    return null(builder.weak_form.choose(model.system, model.free, guesses)[0])
+        return [null(form.choose(model.system, model.free, guesses)[0])]
+    found = read_off(form, model.system, model.free, law)
+    usual = specs(found)[law.wave.phase].usual is not None
+    return [null(law()), null(found)] if usual else [null(found)]
 
 
 def null(effect: AbstractEffect) -> AbstractEffect:
@@ -84,31 +90,30 @@ def null(effect: AbstractEffect) -> AbstractEffect:
     return with_values(effect, {n: float(described[n].null or 0.0) for n in strengths(effect)})
 
 
-def _groups(builder: ModelBuilder, model: FittedModel, shapes: dict[str, AbstractEffect]) -> list[list[str]]:
-    """The candidates in groups that fit beside the model's own parameters into one set of columns."""
-    room = width(len(model.free) + max((len(strengths(e)) for e in shapes.values()), default=0)) - len(model.free)
-    groups: list[list[str]] = []
-    taken = room
-    for name, effect in shapes.items():
-        columns = len(strengths(effect))
-        if taken + columns > room:
-            groups.append([])
-            taken = 0
-        groups[-1].append(name)
-        taken += columns
+def _groups(model: FittedModel, shapes: list[tuple[str, AbstractEffect]]) -> list[dict[str, AbstractEffect]]:
+    """The candidates in groups that fit beside the model's own parameters into one set of columns, one shape of a law in each."""
+    room = width(len(model.free) + max((len(strengths(e)) for _, e in shapes), default=0)) - len(model.free)
+    groups: list[dict[str, AbstractEffect]] = []
+    for name, effect in shapes:
+        taken = [sum(len(strengths(e)) for e in group.values()) for group in groups]
+        free = (g for g, t in zip(groups, taken) if name not in g and t + len(strengths(effect)) <= room)
+        group = next(free, None)
+        if group is None:
+            groups.append(group := {})
+        group[name] = effect
     return groups
 
 
-def _score(builder: ModelBuilder, model: FittedModel, shapes: dict[str, AbstractEffect], group: list[str]) -> list[Candidate]:
+def _score(builder: ModelBuilder, model: FittedModel, shapes: dict[str, AbstractEffect]) -> list[Candidate]:
     """Candidates at these shapes from one set of sensitivities."""
-    columns = [(name, n) for name in group for n in strengths(shapes[name])]
+    columns = [(name, n) for name, effect in shapes.items() for n in strengths(effect)]
     problem, _ = builder.problem(
         builder.effects(model), model.system, extra=[f"{name}.{n}" for name, n in columns], shapes=shapes
     )
     information, score, scales = builder.sensitivities(tied(problem, model.tie), model.unknowns)
     q, present = len(model.free), model.value
     found = []
-    for name in group:
+    for name in shapes:
         index = [*range(q), *(q + j for j, (other, _) in enumerate(columns) if other == name)]
         step, gain = _gain(information[np.ix_(index, index)], score[index], q)
         step = step * scales[index]
