@@ -116,7 +116,7 @@ def test_dry_friction_under_twenty_times_the_noise_is_followed_by_one_trajectory
 
 
 def test_a_load_and_gravity_are_not_left_to_a_ripple_of_the_lowest_order():
-    """Over a small swing both together are the weight of a link whose zero is not the vertical: G sin y + T0 = G' sin(y + phi0)."""
+    """Over a small swing both are the weight of a link whose zero is not the vertical: G sin y + T0 = G' sin(y + phi0)."""
     record, rig = measured(3, "multisine", 3e-5, seconds=12.0, preload={"T0": 2.0}, gravity={"G": -3.0})
     found = jb.refine(record, inertia=rig.inertia)
     assert found.effects == ("gravity",)

@@ -25,7 +25,7 @@ HIDDEN = {
     "gap_spring and preload": {"gap_spring": {"k1": 400.0, "z0": 0.0}, "preload": {"T0": 6.0}},
 }
 ONE_WITH_ANOTHER = {"preload"}
-"""A load moves the place where a spring across the joint rests, and nothing else: the spring alone is the simpler name for both."""
+"""A load moves the place where a spring across the joint rests, and nothing else: the spring alone names both."""
 SLOW = ("coulomb_joint", "gap_spring and preload")
 
 
