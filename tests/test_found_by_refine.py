@@ -42,6 +42,14 @@ def test_gravity_is_found_beside_friction_that_holds_the_link():
         assert abs(number.value - getattr(rig, name)) < 4.0 * number.stderr
 
 
+def test_friction_that_grows_during_a_fit_is_softened_as_far_as_a_step_can_follow():
+    """Begun at a small friction that falls with speed: softened as that allowed, the grown one could not be integrated."""
+    record, rig = measured(7036, "chirp", 3e-5, "stribeck")
+    found = jb.refine(record, inertia=rig.inertia)
+    assert found.effects == ("stribeck",)
+    assert found.fit.score.median < 1.05
+
+
 @NOT_YET
 @pytest.mark.parametrize("number", [30, 70])
 def test_what_free_windows_hide_and_what_friction_holds_up_is_found(number):

@@ -23,7 +23,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..mechanics import AbstractEffect, Instant
-from ..parameters import specs, values
+from ..parameters import specs, values, with_values
 from ..shooting.information import freedom
 from ..shooting.levenberg import Levenberg, Minimum, minimise
 from ..shooting.multiple_shooting import tie_weights
@@ -105,9 +105,10 @@ def continued(
     """
     way, speeds = _Way(first, last=SHARP if speeds else TIGHTEST), speeds or {}
     while (tie := way.next_tie()) is not None:
-        at = _with_friction_width(tied(problem, tie), speeds)
+        begin = way.begin(tie, start)
+        at = _with_friction_width(tied(problem, tie), speeds, begin)
         how = Levenberg(limit=BETWEEN if tie < SHARP else LAST, atol=ROUGHLY)
-        way.note(tie, at, minimise(at, way.begin(tie, start), how))
+        way.note(tie, at, minimise(at, begin, how))
     best = way.likeliest()
     at, minimum = tied(problem, best), way.ended.get(best)
     if minimum is None or not minimum.stats["stalled"]:
@@ -149,7 +150,7 @@ def sharpened(found: Continued, speeds: Mapping[str, float]) -> Continued:
     for shares in ways():
         unknowns, loose = from_here, tied(found.problem, 1.0)
         for share in shares:
-            unknowns = minimise(softer(loose, speeds, share), unknowns, Levenberg(limit=LAST, atol=ROUGHLY)).value
+            unknowns = minimise(softer(loose, speeds, share, unknowns), unknowns, Levenberg(limit=LAST, atol=ROUGHLY)).value
         unknowns = minimise(loose, unknowns, Levenberg(limit=LAST, atol=ROUGHLY)).value
         at = tied(found.problem, TIGHTEST)
         minimum = minimise(at, unknowns, Levenberg(limit=LAST, atol=CLOSELY, damping=1e-9))
@@ -267,21 +268,24 @@ def tied(problem: Problem, tie: float) -> Problem:
     return replace(problem, tie=np.asarray(float(tie)))
 
 
-def _with_friction_width(problem: Problem, speeds: Mapping[str, float]) -> Problem:
+def _with_friction_width(problem: Problem, speeds: Mapping[str, float], begin: Unknowns) -> Problem:
     tie = float(problem.tie)
     if not speeds or tie >= SHARP:
         return problem
-    return softer(problem, speeds, SOFT * min(FINER * LOOSEST / tie, 1.0))
+    return softer(problem, speeds, SOFT * min(FINER * LOOSEST / tie, 1.0), begin)
 
 
-def softer(problem: Problem, speeds: Mapping[str, float], share: float) -> Problem:
+def softer(problem: Problem, speeds: Mapping[str, float], share: float, begin: Unknowns) -> Problem:
     """A problem whose dry friction turns over a ``share`` of the speed at which each law slides, but for those that would be so
-    stiff then that a step of the integration could not follow: these stay sharp."""
+    stiff then, at the parameters to ``begin`` with, that a step of the integration could not follow: these stay sharp."""
     step = 0.5 * float(problem.windows.panel)
-    inertia = float(problem.base[list(specs(problem.system)).index("inertia")])
+    system = with_values(
+        problem.system, dict(zip(specs(problem.system), map(float, problem.parameters(np.asarray(begin.theta)))))
+    )
+    inertia = float(system.inertia)
     widths = {law: share * speed for law, speed in speeds.items()}
     deepest = float(np.max(np.abs(problem.windows.measured)))
-    levels = {law: _level(problem.system.effects[law], problem.system, deepest) for law in widths}
+    levels = {law: _level(system.effects[law], system, deepest) for law in widths}
     stiff = [law for law, width in widths.items() if levels[law] * step > STABLE * inertia * width]
     return problem if stiff else with_friction_widths(problem, widths)
 

@@ -27,7 +27,9 @@ def excess(found: Continued) -> float:
     tight = tied(found.problem, TIGHTEST)
     seen = minimise(tight, found.minimum.value, Levenberg(limit=1))
     stats = {**seen.stats, "cost": np.asarray(0.5 * count)}
-    return 2.0 * (log_evidence(tight, Minimum(seen.value, stats)) - found.log_evidence)
+    height = log_evidence(tight, Minimum(seen.value, stats))
+    # Windows through which no trajectory can be run tell nothing of one: that is no model which leaves nothing.
+    return 2.0 * (height - found.log_evidence) if np.isfinite(height) else np.inf
 
 
 def misfit(found: Continued) -> float:
