@@ -113,3 +113,10 @@ def test_a_model_of_a_drive_is_simulated_with_its_torque(tmp_path):
     held = jb.read_record(tmp_path / "again.csv", ratio=RATIO)
     # Held, each sample of the torque is half a sample late.
     assert np.std(held.channels["motor"] - made.channels["motor"]) < 0.1 * np.std(made.channels["motor"])
+
+
+def test_look_tells_a_drive_and_its_gear(written, tmp_path):
+    told = call(["look", str(written())], tmp_path)
+    assert told.code == 0
+    assert "it seems to be a drive: torque at its motor" in told.out
+    assert re.search(r"next: jaxbacklash fit \S+ --ratio 5\d", told.out), told.out

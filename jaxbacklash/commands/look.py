@@ -51,7 +51,7 @@ def _slowly(found: Description) -> Description:
     if slow is None:
         return found
     command = found.command.replace("jaxbacklash fit", "jaxbacklash lost-motion", 1)
-    kind = "drive" if slow.way == "loop" else found.kind
+    kind = "loop" if slow.way == "loop" else found.kind
     return dataclasses.replace(found, notes=(*found.notes, said_of(slow)), command=command, kind=kind)
 
 
@@ -70,7 +70,7 @@ def text(found: Description) -> str:
     kind = {
         "base_motion": "a record of base motion", "force": "a force-driven record", "free_decay": "a free decay",
         "transmitted": "base motion with the transmitted force", "series": "a series of one channel",
-        "drive": "a slow loop of torque over angle",
+        "loop": "a slow loop of torque over angle", "drive": "a drive: torque at its motor, and what its encoders show",
     }.get(found.kind or "", "no record that can be fitted as it stands")  # fmt: skip
     ready = found.record is not None or found.kind == "series"
     lines += ["", f"it seems to be {kind}"]
