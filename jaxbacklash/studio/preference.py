@@ -31,4 +31,8 @@ class Preference(JSComponent):
 
     def ask(self) -> None:
         """Ask when the page is there."""
-        pn.state.onload(lambda: self.param.update(asked=True))
+
+        def asked() -> None:
+            self.param.update(asked=True)
+
+        pn.state.onload(asked)
