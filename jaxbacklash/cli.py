@@ -11,11 +11,11 @@ import functools
 import gc
 import sys
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
-from typer.core import TyperCommand
 
+from .commands.checked import Checked, Computation
 from .commands.options import EFFECTS, Heldout, Inertia, Json, Laws, Model, NoSeed, Out, Seed, Translation, Window, there
 from .commands.reading import AS_IT_IS, Reading, reads
 
@@ -26,35 +26,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-
-
-class Checked(TyperCommand):
-    """A command whose numbers and file names are checked, all at once, before any library loads."""
-
-    def invoke(self, ctx: Any) -> Any:
-        """Check what was given, then run."""
-        from .commands.doors import check
-
-        check(self.name or "", ctx.params, {p.name: max(p.opts, key=len) for p in self.params})
-        return self.run(ctx)
-
-    def run(self, ctx: Any) -> Any:
-        """Run the command."""
-        return super().invoke(ctx)
-
-
-class Computation(Checked):
-    """A command that computes."""
-
-    def run(self, ctx: Any) -> Any:
-        """Run it as the program computes, its last run's programs on their way."""
-        from .program import cache_folder, start
-
-        start(brief=self.name != "map")  # a map computes for long
-        from .read_ahead import reading_ahead
-
-        with reading_ahead(self.name or "", cache_folder()):
-            return super().run(ctx)
 
 
 computes = functools.partial(app.command, cls=Computation)
