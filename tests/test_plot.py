@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 import jaxbacklash as jb
 from jaxbacklash import plot
+from jaxbacklash.plot.drawing import on_page
 from jaxbacklash.plot.motion import Motion
 
 from . import made_up
@@ -63,6 +64,13 @@ def test_a_fit_is_drawn_as_measured_and_predicted():
     inside = np.isin(fit.score.t, rows)
     assert curve(axes[1], fit.score.t[inside], fit.score.measured[inside])
     assert np.allclose(axes[3].get_lines()[-1].get_ydata(), fit.score.residual[inside])
+
+
+def test_titles_of_a_fit_do_not_run_into_each_other():
+    page = on_page(plot.fit, made_up.fit(miss=0.04))
+    page.draw_without_rendering()
+    first, second = (ax._left_title.get_window_extent() for ax in page.axes if ax.get_title(loc="left")[:2] in ("A,", "B,"))
+    assert first.x1 < second.x0
 
 
 def test_a_stretch_of_a_fit_is_drawn_window_by_window():
