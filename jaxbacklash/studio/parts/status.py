@@ -12,6 +12,8 @@ from ...plot.style import short
 from .part import WIDE, Desk, Part, button, escaped, row, same, text, worded
 
 INDENT = "\u2003"
+RED = {"&:not(.Mui-disabled)": {"backgroundColor": "#c62828", "color": "#ffffff"}}
+"""The toolkit's own red on a dark page is too bright for the white words on it."""
 
 
 class StatusPart(Part):
@@ -26,7 +28,7 @@ class StatusPart(Part):
         self.models.param.watch(self._go, "value")
         self.undo: Any = button("Undo", lambda: desk.do(self.session.undo), variant="outlined")
         self.redo: Any = button("Redo", lambda: desk.do(self.session.redo), variant="outlined")
-        self.stop: Any = button("Stop", lambda: desk.do(self.session.stop), color="error")
+        self.stop: Any = button("Stop", lambda: desk.do(self.session.stop), color="error", sx=RED)
         self.message, self.work = text(), text()
         self.content = pn.Column(self.work, row(self.stop), self.message, self.models, row(self.undo, self.redo), **WIDE)
         self._of: Any = None
