@@ -43,6 +43,7 @@ RANGES: dict[str, Range] = {
     "map.skip": Range(0, 100_000, "a number of periods"),
     "map.samples": Range(1, 10_000, "a number of samples"),
     "ratio": Range(1e-6, 1e6, "turns of x for a turn of the link"),
+    "kt": Range(TINY, 1e9, "the torque of a motor for an ampere [N m/A]"),
     "start": Range(-1e12, 1e12, "a time of the record [s]"),
     "stop": Range(-1e12, 1e12, "a time of the record [s]"),
     "port": Range(0, 65_535, "a port of this machine, 0 for a free one"),
