@@ -93,7 +93,8 @@ def _walk(node: Any, prefix: str) -> list[tuple[str, Spec]]:
     if isinstance(node, dict):  # pytrees sort the keys of a dict, so names must follow
         return [pair for key in sorted(node) for pair in _walk(node[key], f"{prefix}{key}.")]
     found: list[tuple[str, Spec]] = []
-    for name, spec, bare in _fields(node.__class__):
+    kind: Any = node if isinstance(node, type) else node.__class__  # a law's class tells as much as one of its kind
+    for name, spec, bare in _fields(kind):
         if spec is not None:
             found.append((prefix + name, spec))
         else:

@@ -266,3 +266,8 @@ def test_what_the_measuring_chain_does_follows_the_generator(name):
         error = shown_error({n: values_of[n] for n in names}, names)
         assert np.median(error) < 1e-7
         assert np.quantile(error, 0.99) < 3e-6
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_a_class_tells_the_parameters_that_its_laws_have(name):
+    assert specs(type(EVERY[name])) == specs(EVERY[name])

@@ -77,12 +77,13 @@ def as_it_ended(builder: ModelBuilder, model: FittedModel) -> tuple[Problem, Unk
 
 
 def model_record(builder: ModelBuilder, predicted: Prediction) -> Record:
-    """A fitted trajectory at the samples of the record, the measured one where windows end before it."""
+    """A fitted trajectory at the samples of the record, the measured one where windows end before it or it runs away."""
     record = builder.record
     seen = np.asarray(builder.windows.weight) > 0.0
     channels: dict[str, np.ndarray] = {}
     for name, values in ((record.observed_name, predicted.motion), ("x", predicted.input[:, : builder.windows.samples])):
         if name in record.channels and np.shape(values) == seen.shape and not (name == "x" and builder.windows.by_force):
-            values = np.asarray(values)[seen][: record.samples]
-            channels[name] = np.concatenate([values, record.channels[name][values.size :]])
+            values, own = np.asarray(values)[seen][: record.samples], record.channels[name]
+            # A trajectory that has run away says nothing of where the link was.
+            channels[name] = np.concatenate([np.where(np.isfinite(values), values, own[: values.size]), own[values.size :]])
     return record.replace(**channels)
