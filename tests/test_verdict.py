@@ -89,6 +89,10 @@ def test_what_is_not_borne_out_is_told_with_both_errors():
     assert said.endswith("raise it on the held-out record from 1.11 to 1.73: it is not added.")
 
 
+def test_of_a_law_that_stays_in_nothing_is_said():
+    assert not_added(fit(1.0, 1.0, 1.1), fit(1.0, 1.0, 1.7), []) == ""
+
+
 def test_a_few_windows_of_a_held_out_record_that_are_missed_are_told():
     fits = [fit(5.0, 4.0, 1.6, 1.4), fit(1.0, 1.0, 5.6, 0.99)]
     verdict = judge_rest(model("dahl", misfit=1.0, freedom=20_000), fits)

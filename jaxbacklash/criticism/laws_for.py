@@ -41,8 +41,8 @@ def applicable(law: type[AbstractEffect], base: System) -> bool:
     """Whether a law can act in a joint like this one, and does what the joint alone does not.
 
     Laws of the motor act in a drive only. Where the transmitted force is measured, friction that sticks in the joint is no
-    function of the motion, the gain of
-    the force sensor is one with the size of everything, and a low-pass remembers motion alone.
+    function of the motion, the gain of the force sensor is one with the size of everything, and a low-pass remembers motion
+    alone.
     """
     scaled = canonical_name(law) in ("sensor_gain", "sensor_filter")
     if base.observed == "T" and ((law.slides and law.port == "joint") or scaled):

@@ -118,16 +118,16 @@ def refine(
 
     progress("scoring predictions", 0.85)
     fits = [judged(step.model) for step in steps]
-    added = fits[-1]
+    against = ""
     if (count := borne_out(fits)) < len(fits):
         refused = sorted(steps[-1].model.names - steps[count - 1].model.names)
+        against = not_added(fits[count - 1], fits[-1], refused)
         search.level, steps, fits = {}, steps[:count], fits[:count]
     kept = steps[-1].model
     settled(fits[-1])
     last = averaged(fits[-1], kept, tuple(search.level.values()))
     if last is not fits[-1]:
         settled(last)
-    against = not_added(last, added, refused) if added is not fits[-1] else ""
     fits[-1] = last
     stages = tuple(Stage(s.added, s.dropped, fit, s.ranking, s.evidence, s.refits) for s, fit in zip(steps, fits))
     clock["score"] = time.perf_counter()

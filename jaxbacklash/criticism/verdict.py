@@ -89,7 +89,10 @@ def borne_out(fits: Sequence[Fit]) -> int:
 
 
 def not_added(kept: Fit, refused: Fit, names: Sequence[str]) -> str:
-    """What is said of laws that the search had added and the held-out record does not bear out."""
+    """What is said of laws that the search had added and the held-out record does not bear out, nothing where there are none: a
+    law that was left out stays in."""
+    if not names:
+        return ""
     assert kept.heldout is not None
     assert refused.heldout is not None
     them, lower = "it is" if len(names) == 1 else "they are", error_in_words(refused.score)
