@@ -42,6 +42,9 @@ from .fitting import Score as Score
 from .fitting import compare as compare
 from .fitting import fit as fit
 from .fitting import predict_record as predict_record
+from .many import Each as Each
+from .many import fit_each as fit_each
+from .many import refine_each as refine_each
 from .mechanics import AbstractEffect as AbstractEffect
 from .mechanics import Instant as Instant
 from .model_file import dump_model as dump_model

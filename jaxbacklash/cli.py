@@ -16,7 +16,26 @@ from typing import Annotated
 import typer
 
 from .commands.checked import Checked, Computation
-from .commands.options import EFFECTS, Heldout, Inertia, Json, Laws, Model, NoSeed, Out, Seed, Translation, Window, there
+from .commands.options import (
+    EFFECTS,
+    Cluster,
+    Each,
+    Heldout,
+    Inertia,
+    Json,
+    Laws,
+    Model,
+    NoSeed,
+    Out,
+    Seed,
+    Translation,
+    Window,
+    Workers,
+    one_record,
+    only_with_each,
+    there,
+    there_or_each,
+)
 from .commands.reading import AS_IT_IS, Reading, reads
 
 app = typer.Typer(
@@ -67,7 +86,8 @@ def look(
 @reads
 def fit(
     records: Annotated[
-        list[Path], typer.Argument(callback=there, help="One or more records: CSV, npz or mat; see the README for columns")
+        list[Path],
+        typer.Argument(callback=there_or_each, help="Records: CSV, npz or mat; see the README for columns"),
     ],
     inertia: Inertia = None,
     model: Model = "joint",
@@ -82,8 +102,19 @@ def fit(
     profile: Annotated[bool, typer.Option("--profile", help="Intervals from the profile likelihood (slower)")] = False,
     translation: Translation = False,
     seed: Seed = 0,
+    each: Each = False,
+    cluster: Cluster = None,
+    workers: Workers = None,
 ) -> None:
-    """Fit backlash, stiffness and damping (and effects you name) to one or more records."""
+    """Fit backlash, stiffness and damping (and effects you name) to one or more records: all as one, or each by itself."""
+    if only_with_each(each, {"--cluster": cluster, "--workers": workers}, {"--profile": profile}):
+        from .commands import each as many
+
+        many.run(
+            "fit", records, inertia=inertia, model=model, effects=effects, laws=laws, heldout=heldout, out=out, as_json=json,
+            reading=reading, window=window, starts=starts, translational=translation, seed=seed, cluster=cluster, workers=workers,
+        )  # fmt: skip
+        return
     from .commands import fit as command
     from .commands.common import load_laws
 
@@ -149,7 +180,7 @@ def diagnose(
 @computes(epilog="Example: jaxbacklash refine run1.csv --heldout run2.csv --inertia 3.16 --out found1")
 @reads
 def refine(
-    record: Annotated[Path, typer.Argument(callback=there, help="A record: CSV, npz or mat")],
+    records: Annotated[list[Path], typer.Argument(callback=there_or_each, help="A record: CSV, npz or mat; with --each, many")],
     heldout: Heldout = None,
     inertia: Inertia = None,
     model: Model = "joint",
@@ -160,8 +191,20 @@ def refine(
     window: Window = None,
     translation: Translation = False,
     seed: NoSeed = 0,
+    each: Each = False,
+    cluster: Cluster = None,
+    workers: Workers = None,
 ) -> None:
     """Find the effects a record needs beyond the base model, add them one by one, and say what is left."""
+    if only_with_each(each, {"--cluster": cluster, "--workers": workers}, {}):
+        from .commands import each as many
+
+        many.run(
+            "refine", records, inertia=inertia, model=model, laws=laws, heldout=heldout, out=out, as_json=json,
+            reading=reading, window=window, translational=translation, seed=seed, cluster=cluster, workers=workers,
+        )  # fmt: skip
+        return
+    record = one_record(records)
     from .commands import refine as command
     from .commands.common import load_laws
 

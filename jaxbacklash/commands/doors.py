@@ -17,6 +17,8 @@ from .ranges import check_numbers
 
 RESULTS = ("result.json", "model.toml", "model-with-learned-torque.toml", "report.html")
 """What a command writes into its folder ``--out``."""
+OF_EACH = ("table.csv", "table.parquet", "rows.jsonl")
+"""What it writes beside result.json and report.html with ``--each``."""
 ONE_FILE = ("simulate", "map", "export")
 """Commands whose ``--out`` is a file."""
 BESIDE = {"map": (".html", ".png")}
@@ -49,7 +51,8 @@ def check(command: str, given: Mapping[str, Any], options: Mapping[str, str]) ->
     if out is None:
         return
     read = [path for path in _paths(given, but=OUT) if _file(path)]
-    for target in _written(command, Path(out)):
+    beside = [Path(out) / name for name in OF_EACH] if given.get("each") else []
+    for target in [*_written(command, Path(out)), *beside]:
         if target.is_dir():
             raise BadInput(f"--out {shlex.quote(str(out))}: {target} is a folder, wanted a place for a file of that name")
         same = next((path for path in read if _file(target) and os.path.samefile(path, target)), None)
@@ -102,6 +105,16 @@ def state_of(path: Path) -> os.stat_result | None:
         short = text if len(text) < 80 else f"{text[:60]}..."
         reason = getattr(why, "strerror", None) or str(why)
         raise BadInput(f"{short!r}: cannot be used as the name of a file ({reason})") from None
+
+
+def each_file(path: Path) -> list[Path]:
+    """What a path stands for where many records are wanted: all files of a folder by their names, else itself.
+
+    A folder that is one recording, as ROS writes them, is itself.
+    """
+    if not path.is_dir() or (path / "metadata.yaml").exists():
+        return [path]
+    return sorted(entry for entry in path.iterdir() if entry.is_file() and not entry.name.startswith("."))
 
 
 def _paths(given: Mapping[str, Any], but: str | None = None) -> Iterator[Path]:

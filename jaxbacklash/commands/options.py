@@ -23,6 +23,27 @@ def there(found: Any) -> Any:
     return found
 
 
+def there_or_each(context: typer.Context, found: Any) -> Any:
+    """`there`; of many records a missing one is a row of the table and stops nothing."""
+    return found if context.params.get("each") else there(found)
+
+
+def only_with_each(each: bool, of_each: dict[str, Any], of_one: dict[str, Any]) -> bool:
+    """``each``, once it is seen that no option was given that means nothing with or without it."""
+    odd = next((name for name, given in (of_one if each else of_each).items() if given not in (None, False)), None)
+    if odd is not None:
+        raise BadInput(f"{odd}: {'is not for many records' if each else 'is for many records, each by itself'}; "
+                       f"leave it out, or {'--each' if each else 'add --each'}")  # fmt: skip
+    return each
+
+
+def one_record(records: list[Path]) -> Path:
+    """The record of a command that takes one."""
+    if len(records) > 1:
+        raise BadInput(f"{records[1]}: is a second record, wanted one, or --each for many, each by itself")
+    return records[0]
+
+
 EFFECTS = (
     "asymmetric_gap, asymmetric_stiffness, bouc_wen, clock_drift, cogging, contact_damping, contact_exponent, "
     "coulomb_ground, coulomb_joint, coulomb_motor, cubic_stiffness, dahl, damping_drift, disturbance, flexible_link, "
@@ -52,3 +73,11 @@ Laws = Annotated[Path | None, typer.Option("--laws", help="A Python file with ef
 Heldout = Annotated[
     Path | None, typer.Option("--heldout", callback=there, help="A record to predict with the fitted parameters frozen")
 ]
+Each = Annotated[
+    bool,
+    typer.Option("--each", is_eager=True, help="Each record by itself, all cores; a folder stands for its files. See --out"),
+]
+Cluster = Annotated[
+    str | None, typer.Option("--cluster", help="With --each: address of a dask scheduler whose workers do it, as tcp://host:8786")
+]
+Workers = Annotated[int | None, typer.Option("--workers", help="With --each: processes of this machine; default one a core")]

@@ -28,6 +28,7 @@ RANGES: dict[str, Range] = {
     "inertia": Range(TINY, 1e12, "a positive number of kg m^2 (kg for a translating mass)"),
     "window": Range(0.02, 10.0, "a length [s]"),
     "starts": Range(1, 100, "a number of starting points"),  # each is a fit of its own, of seconds
+    "workers": Range(1, 1024, "a number of processes"),
     "seed": Range(0, 2**63 - 1, "a whole number"),
     "resample_rate": Range(1e-6, 1e7, "a rate [Hz]"),
     "gravity": Range(-1e9, 1e9, "m g L / J [1/s^2]"),

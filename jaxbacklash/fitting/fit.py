@@ -49,6 +49,7 @@ def fit(
     heldout: Record | None = None,
     window: float | None = None,
     starts: int = 4,
+    spare_starts: bool = False,
     seed: int = 0,
     translational: bool = False,
     profile: bool = False,
@@ -67,6 +68,7 @@ def fit(
     heldout : a record to predict with the fitted parameters frozen
     window : length of the windows whose error is quoted [s]; default 0.2 s, or 32 samples where that is longer
     starts : how many starting points are tried (the first is the equation-error estimate)
+    spare_starts : try the others only where the first does not lead to one trajectory that leaves noise alone
     seed : seed of the further starting points
     translational : units of a translating mass
     profile : intervals from the profile likelihood instead of the curvature at the minimum
@@ -125,7 +127,7 @@ def fit(
     alone = layout.noise
     clock["cut"] = time.perf_counter()
 
-    found = search(system, windows, names, starts=starts, seed=seed, rough=start is None, progress=progress)
+    found = search(system, windows, names, starts=starts, spare=spare_starts, seed=seed, rough=start is None, progress=progress)
     if not found.tied and system.has_play and system.motor is None and not sticks_and_slips(system):
         begun = system, windows, layout, group
         found, (system, windows, layout, group) = _harder(found, begun, chosen, names, window, seed, progress)

@@ -90,6 +90,7 @@ def search(
     *,
     starts: int,
     seed: int,
+    spare: bool = False,
     rough: bool = True,
     progress: Callable[[str, float], None] = silent,
 ) -> Found:
@@ -101,6 +102,7 @@ def search(
     windows : the records
     free : names of the free parameters
     starts, seed : how many starting points, and the seed of those after the first
+    spare : the others are not tried where the first leads to one trajectory that leaves noise alone: no place is better by much
     rough : whether the values to start from may be far off: then a long record is not fitted before a segment of it
     progress : told the stage in words and the share of the work done
 
@@ -113,6 +115,8 @@ def search(
     if sticks_and_slips(system):
         return _stick_slip(problem, starts, seed, progress)
     guess = first_guess(problem)
+    if spare and starts > 1 and (enough := _from_the_first(problem, guess, seed, progress)) is not None:
+        return enough
     short = segment(problem, guess) if rough or starts > 1 else None
     arrived: list[Minimum] = []
     if short is not None:
@@ -135,6 +139,15 @@ def search(
         raise NoAnswer(NOWHERE)
     agreeing = sum(count for found, count, _ in ends if best.log_evidence - found.log_evidence < WITHIN_CHANCE)
     return Found(best, agreeing, len(arrived), steps)
+
+
+def _from_the_first(problem: Problem, guess: Unknowns, seed: int, progress: Callable[[str, float], None]) -> Found | None:
+    """Where the first starting point leads to, if that is one trajectory that leaves noise alone."""
+    arrived = _arrivals(problem, guess, 1, seed, progress)
+    found = _one_trajectory(problem, arrived[0].value) if arrived else None
+    if found is None or not np.isfinite(found.log_evidence):
+        return None
+    return Found(found, 1, 1, int(arrived[0].stats["steps"]) + _steps(found))
 
 
 def _arrivals(problem: Problem, guess: Unknowns, starts: int, seed: int, progress: Callable[[str, float], None]) -> list[Minimum]:

@@ -7,6 +7,7 @@ from .choices import correlation as correlation
 from .choices import delay as delay
 from .choices import dimension as dimension
 from .choices import series as series
+from .courses import course as course
 from .fits import fit as fit
 from .fits import force_loop as force_loop
 from .fits import phase_plane as phase_plane

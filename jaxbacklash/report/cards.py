@@ -7,6 +7,7 @@ from typing import Any
 from . import dynamics_cards as dynamics_cards
 from . import fit_cards as fit_cards
 from . import lost_motion_card as lost_motion_card
+from . import many_card as many_card
 from .card import as_html, as_rich, card_of
 
 
