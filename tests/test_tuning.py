@@ -5,15 +5,19 @@ import pytest
 
 pytest.importorskip("numba")
 
-from jaxbacklash.effects import BoucWen, Dahl, Lugre
+from scipy.linalg import expm
+
+from jaxbacklash.effects import BoucWen, Dahl, FlexibleLink, Lugre
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.mechanics import Instant
 from jaxbacklash.parameters import values
 from jaxbacklash.records import Record
 from jaxbacklash.regression import tuning
+from jaxbacklash.regression.along_motion import own_torques
 from jaxbacklash.regression.tuning import tune
 from jaxbacklash.regression.weak_form import WeakForm
 from tests.independent.generator import make_excitation, measure, simulate_truth
+from tests.independent.likenesses import make_likeness
 from tests.independent.rigs import Rig
 
 RIG = Rig(inertia=3.0, backlash=0.024, stiffness=12000.0, damping=18.0)
@@ -49,6 +53,31 @@ def test_the_right_law_is_tuned_to_its_values(name):
     joint = values(tuned.system)
     assert joint["backlash"] == pytest.approx(RIG.backlash, rel=0.01)
     assert joint["stiffness"] == pytest.approx(RIG.stiffness, rel=0.01)
+
+
+@pytest.mark.parametrize("seed", [2, 4])
+def test_what_swings_behind_the_link_is_found_in_a_decay_that_began_with_it_away_from_rest(seed):
+    """Two masses let go from anywhere (an exact solution): the law's states at the first sample are regressed with it."""
+    one = make_likeness("two_modes", seed)
+    base, free, _ = base_system(one.record, one.how["model"], one.how["inertia"])
+    form = WeakForm(one.record)
+    shapes = FlexibleLink.guesses(base, form.motion)
+    tuned = tune(form, base, free, shapes)
+    # Which part of the two frequencies is the joint's a decay does not tell; that there are two it does.
+    rows = form.acceleration.size
+    assert form.evidence(base, free, [tuned.effect]) > 0.5 * rows
+    assert np.any(form.begun(tuned.effect, base, free) != 0.0)
+
+
+def test_states_that_begin_away_from_rest_add_what_the_law_then_does_of_itself():
+    seen = make_likeness("two_modes", 0).record
+    base, _, _ = base_system(seen, "linear", 1.0)
+    m, law = WeakForm(seen).motion, FlexibleLink(0.2, 400.0, 0.5)
+    offset = np.array([0.01, -0.3])
+    added = (own_torques([law], base, m, offset[None]) - own_torques([law], base, m))[0]
+    rates = np.array([[0.0, 1.0], [-400.0 / 0.2, -0.5 / 0.2]])
+    exact = np.array([[400.0, 0.5] @ expm(rates * t) @ offset for t in m.t[:500]])
+    assert added[:500] == pytest.approx(exact, abs=0.02 * np.max(np.abs(exact)))  # Heun's method at the record's samples
 
 
 def test_lugre_can_find_its_way_back_from_a_static_level_below_the_sliding_one():

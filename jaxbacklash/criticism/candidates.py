@@ -24,13 +24,15 @@ from .model_builder import ModelBuilder, strengths, width
 @dataclass(frozen=True)
 class Candidate:
     """An absent effect: ``effect`` at its predicted values, ``gain`` the predicted fall of twice the cost, ``share`` of what the
-    model leaves that this takes away, 0 to 1, ``moved`` predicted values of the model's free parameters."""
+    model leaves that this takes away, 0 to 1, ``moved`` predicted values of the model's free parameters, ``begun`` (S,) how far
+    its states are from rest at the first sample, for a law that rings."""
 
     name: str
     effect: AbstractEffect
     gain: float
     share: float
     moved: dict[str, float]
+    begun: np.ndarray | None = None
 
     @property
     def parameters(self) -> int:

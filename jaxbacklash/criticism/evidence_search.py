@@ -96,7 +96,9 @@ class EvidenceSearch:
 
     def _fitted(self, neighbour: Neighbour, model: FittedModel) -> FittedModel:
         near = neighbour.near
-        return self.fitter.fit_model(neighbour.effects, near or model, neighbour.joint, again=near is not None)
+        return self.fitter.fit_model(
+            neighbour.effects, near or model, neighbour.joint, again=near is not None, begun=neighbour.begun
+        )
 
     @property
     def demand(self) -> float:

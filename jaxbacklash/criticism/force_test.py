@@ -41,14 +41,17 @@ class ForceTest:
         self.still, predicted = answered(self.problem, self.unknowns)
         self.along = motion(model_record(fitter, predicted))
 
-    def best(self, shapes: list[AbstractEffect], instead: list[AbstractEffect]) -> tuple[float, AbstractEffect]:
-        """The largest fall of minus twice the log likelihood among a law's shapes, and that shape at its best strength; that of a
-        law which comes ``instead`` of others of the model is left as it is."""
+    def best(
+        self, shapes: list[AbstractEffect], instead: list[AbstractEffect], begun: np.ndarray | None = None
+    ) -> tuple[float, AbstractEffect, int]:
+        """The largest fall of minus twice the log likelihood among a law's shapes, that shape at its best strength, and which it
+        is; the strength of a law that comes ``instead`` of others of the model is left as it is. ``begun`` (K, S) as in
+        `own_torques`."""
         less = sum((own_torques([law], self.system, self.along)[0] for law in instead), np.zeros(self.along.t.size))
-        found = [self.fall(torque - less) for torque in own_torques(shapes, self.system, self.along)]
+        found = [self.fall(torque - less) for torque in own_torques(shapes, self.system, self.along, begun)]
         best = max(range(len(shapes)), key=lambda k: found[k][0])
         gain, size = found[best]
-        return gain, shapes[best].scaled(size) if gain > 0.0 and not instead else shapes[best]
+        return gain, shapes[best].scaled(size) if gain > 0.0 and not instead else shapes[best], best
 
     def best_shown(self, shapes: list[AbstractEffect]) -> tuple[float, AbstractEffect]:
         """The same of a law of the measuring chain, which shows the motion otherwise."""

@@ -107,10 +107,13 @@ class ModelBuilder:
         # A torque that is left out acts on the link, and jumps no state inside a law.
         return _pad(make_problem(system, self.windows, free)), free
 
-    def followed(self, effects: dict[str, AbstractEffect], joint: System, starts: np.ndarray) -> np.ndarray:
-        """Starts (S, W) of windows: motion as in ``starts``, states of laws as they follow the measured motion."""
+    def followed(
+        self, effects: dict[str, AbstractEffect], joint: System, starts: np.ndarray, begun: dict[str, np.ndarray]
+    ) -> np.ndarray:
+        """Starts (S, W) of windows: motion as in ``starts``, states of laws as they follow the measured motion, from rest or from
+        where they have ``begun``."""
         m, t0 = self.weak_form.motion, np.asarray(self.windows.t0)
-        hidden = [np.interp(t0, m.t, s) for n in sorted(effects) for s in own_states(effects[n], joint, m)]
+        hidden = [np.interp(t0, m.t, s) for n in sorted(effects) for s in own_states(effects[n], joint, m, begun.get(n))]
         return np.stack([*np.asarray(starts)[:2], *hidden])
 
     def sensitivities(self, problem: Problem, unknowns: Unknowns) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

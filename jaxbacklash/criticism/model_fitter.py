@@ -52,7 +52,7 @@ class ModelFitter(ModelBuilder):
 
     def fit_model(
         self, effects: dict[str, AbstractEffect], near: FittedModel | None = None, joint: System | None = None, *,
-        again: bool = False,
+        again: bool = False, begun: dict[str, np.ndarray] | None = None,
     ) -> FittedModel:  # fmt: skip
         """The joint with these effects, fitted from their values once for each set of laws.
 
@@ -62,6 +62,7 @@ class ModelFitter(ModelBuilder):
         near : a fitted model from whose joint, windows and ties to start, or looser ones; None starts from the record
         joint : a system with the joint's values to start from instead
         again : fit it though it was fitted before; the better of both fits is kept
+        begun : how far states (S,) of laws are from rest at the first sample, by the law's name; at rest those that are not named
         """
         if not again and (known := self.fitted.get(frozenset(effects))) is not None:
             return known
@@ -84,7 +85,7 @@ class ModelFitter(ModelBuilder):
         if was is not None:
             unknowns = Unknowns(unknowns.theta, was.unknowns.starts, was.unknowns.coefficients)
         elif any(effect.states for effect in effects.values()):
-            starts = self.followed(effects, problem.system, unknowns.starts)
+            starts = self.followed(effects, problem.system, unknowns.starts, begun or {})
             unknowns = Unknowns(unknowns.theta, starts, unknowns.coefficients)
         self._count()
         hard = any(e.slides or e.states for e in effects.values())

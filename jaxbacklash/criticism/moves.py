@@ -7,7 +7,9 @@ simpler one takes its place. `evidence_search` says which moves are tried; `mode
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 from ..mechanics import AbstractEffect, canonical_name
 from ..parameters import with_values
@@ -23,12 +25,13 @@ class Neighbour:
 
     ``effects`` by canonical name, at the values to start from; ``joint``, a system with the joint's values to start from, None
     for those of the model that it is a neighbour of; ``near``, another fitted model of the same laws to start from, which is kept
-    where it is the better one.
+    where it is the better one; ``begun`` how far states of laws that ring are from rest at the first sample.
     """
 
     effects: dict[str, AbstractEffect]
     joint: System | None = None
     near: FittedModel | None = None
+    begun: dict[str, np.ndarray] = field(default_factory=dict)
 
     @property
     def names(self) -> frozenset[str]:
@@ -49,7 +52,8 @@ def with_law(fitter: ModelFitter, model: FittedModel, candidate: Candidate) -> N
     gone = give_way(fitter, model, candidate.name)
     effects = {n: e for n, e in fitter.effects(model).items() if n not in gone} | {candidate.name: candidate.effect}
     # A law that remembers was tuned together with the model's own parameters.
-    return Neighbour(effects, with_values(model.system, candidate.moved) if candidate.effect.states else None)
+    joint = with_values(model.system, candidate.moved) if candidate.effect.states else None
+    return Neighbour(effects, joint, begun={} if candidate.begun is None else {candidate.name: candidate.begun})
 
 
 def in_other_forms(fitter: ModelFitter, model: FittedModel, name: str) -> Iterator[Neighbour]:

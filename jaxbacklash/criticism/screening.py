@@ -75,6 +75,7 @@ def _remembering(fitter: ModelFitter, model: FittedModel, absent: Sequence[str],
         system, free = _without(model, gone)
         shapes = fitter.laws[name].guesses(system, form.motion)
         moved: dict[str, float] = {}
+        begun: np.ndarray | None = None
         if measures_only(fitter.laws[name]):
             test = test or ForceTest(fitter, model)
             gain, effect = test.best_shown(shapes)
@@ -84,11 +85,13 @@ def _remembering(fitter: ModelFitter, model: FittedModel, absent: Sequence[str],
             test = test or ForceTest(fitter, model)
             tuned = tune(form, system, free, shapes)
             others = [tuned.effect] if tuned.effect.simpler() else [*shapes, tuned.effect]
-            gain, effect = test.best(others, [model.system.effects[n] for n in gone])
+            begun = np.stack([form.begun(e, system, free) for e in others]) if tuned.effect.rings else None
+            gain, effect, kept = test.best(others, [model.system.effects[n] for n in gone], begun)
+            begun = None if begun is None else begun[kept]
             moved = {n: v for n, v in values(tuned.system).items() if n in free}
         near = [n for law in effect.simpler() if (n := canonical_name(type(law))) in fitter.laws]
         less = sum(len(free_specs(model.system.effects[n])) for n in gone) * float(np.log(fitter.record.samples))
-        candidate = Candidate(name, effect, gain / model.deflation + less, share_of_rest(model, gain), moved)
+        candidate = Candidate(name, effect, gain / model.deflation + less, share_of_rest(model, gain), moved, begun)
         if net_gain(candidate, fitter) > max((promised[n] for n in near if n in promised), default=-np.inf):
             found.append(candidate)
     return found

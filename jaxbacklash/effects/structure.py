@@ -11,9 +11,9 @@ from ..mechanics import AbstractEffect, Instant
 from ..parameters import Scalar, param
 from .scales import natural_frequency
 
-LOWEST, HIGHEST, STEPS = 1.1, 7.0, 12
-"""Frequencies at which something behind the link may swing, in units of the link's own in contact: below that it swings with the
-joint as one, far above it is one with the link."""
+LOWEST, HIGHEST, STEPS = 0.5, 7.0, 16
+"""Frequencies at which something behind the link may swing, in units of the link's own in contact, which a fit without it may
+have taken for the upper one of two: below that it swings with the joint as one, far above it is one with the link."""
 
 
 class FlexibleLink(AbstractEffect):
@@ -28,6 +28,7 @@ class FlexibleLink(AbstractEffect):
     c2: Scalar = param(unit="N m s/rad", default=0.0, lower=0.0, scale=1.0)
     states: ClassVar[tuple[str, ...]] = ("y2", "dy2")
     port: ClassVar[str] = "ground"
+    rings: ClassVar[bool] = True
 
     @classmethod
     def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:

@@ -65,14 +65,27 @@ def torques(system: System, seeds: np.ndarray, m: Motion) -> tuple[np.ndarray, n
     return np.asarray(torque), np.asarray(columns)
 
 
-def own_torques(shapes: list[AbstractEffect], system: System, m: Motion) -> np.ndarray:
-    """Torque of one law at each of its shapes (K, N), in a system like this one along a motion."""
+def own_torques(shapes: list[AbstractEffect], system: System, m: Motion, begun: np.ndarray | None = None) -> np.ndarray:
+    """Torque of one law at each of its shapes (K, N), in a system like this one along a motion.
+
+    ``begun`` (K, S) is how far its states are at the first sample from where they would rest, zero unless given.
+    """
     joint = _joint(system)
+    if begun is not None:
+        rung = zip(own_torques(shapes, system, m), ringing(shapes, system, m), begun)
+        return np.stack([torque + offset @ columns for torque, columns, offset in rung])
     if shapes[0].states and len({jax.tree.structure(s) for s in shapes}) == 1:
         # States are followed sample by sample, which takes no longer for several shapes than for one.
         vectors = np.stack([ravel(s) for s in shapes])
         return np.asarray(_own_torques(shapes[0], vectors, joint, m.rows, m.substeps))
     return np.stack([np.asarray(_own_torque(s, joint, m.rows, m.substeps)) for s in shapes])
+
+
+def ringing(shapes: list[AbstractEffect], system: System, m: Motion) -> np.ndarray:
+    """Torque (K, S, N) of one law at each of its shapes for each state that is 1 more at the first sample: what it does later of
+    itself, where it is linear in its states."""
+    vectors = np.stack([ravel(s) for s in shapes])
+    return np.asarray(_ringing(shapes[0], vectors, _joint(system), m.rows, m.substeps))
 
 
 def own_tangents(effect: AbstractEffect, system: System, seeds: np.ndarray, m: Motion) -> tuple[np.ndarray, np.ndarray]:
@@ -82,9 +95,10 @@ def own_tangents(effect: AbstractEffect, system: System, seeds: np.ndarray, m: M
     return np.asarray(torque), np.asarray(columns)
 
 
-def own_states(effect: AbstractEffect, system: System, m: Motion) -> tuple[np.ndarray, ...]:
-    """Internal states of a law along a motion, (N,) each."""
-    return tuple(np.asarray(s) for s in _followed(effect, _joint(system), m.rows, m.substeps))
+def own_states(effect: AbstractEffect, system: System, m: Motion, begun: np.ndarray | None = None) -> tuple[np.ndarray, ...]:
+    """Internal states of a law along a motion, (N,) each; ``begun`` (S,) is how far they are from rest at the first sample."""
+    begun = np.zeros(len(effect.states)) if begun is None else np.asarray(begun)
+    return tuple(np.asarray(s) for s in _followed(effect, _joint(system), m.rows, m.substeps, begun))
 
 
 def _joint(system: System) -> System:
@@ -113,9 +127,9 @@ def _torques(system: System, vector: Any, seeds: Any, rows: Any, substeps: int) 
     return torque, jax.vmap(lambda e: jax.jvp(along, (vector,), (e,))[1])(seeds)
 
 
-def _alone(effect: AbstractEffect, joint: System, rows: Any, substeps: int) -> Any:
+def _alone(effect: AbstractEffect, joint: System, rows: Any, substeps: int, begun: Any = None) -> Any:
     beside = System(joint.inertia, joint.contact, joint.damper, {canonical_name(effect): effect}, joint.observed)
-    states = _states(effect, joint, rows, substeps)
+    states = _states(effect, joint, rows, substeps, begun)
 
     def at(t: Any, y: Any, dy: Any, x: Any, dx: Any, own: Any) -> Any:
         now = beside.instant(t, (y, dy), Drive(x, dx))
@@ -138,6 +152,17 @@ def _own_torques(effect: AbstractEffect, vectors: Any, joint: System, rows: Any,
 
 
 @kept_jit
+def _ringing(effect: AbstractEffect, vectors: Any, joint: System, rows: Any, substeps: int) -> Any:
+    still = jnp.zeros(len(effect.states))
+
+    def of(vector: Any) -> Any:
+        along = lambda begun: _alone(unravel(effect, vector), joint, rows, substeps, begun)  # noqa: E731
+        return jax.vmap(lambda e: jax.jvp(along, (still,), (e,))[1])(jnp.eye(still.size))
+
+    return jax.vmap(of)(vectors)
+
+
+@kept_jit
 def _own_tangents(effect: AbstractEffect, vector: Any, seeds: Any, joint: System, rows: Any, substeps: int) -> tuple[Any, Any]:
     def along(vector: Any) -> Any:
         return _alone(unravel(effect, vector), joint, rows, substeps)
@@ -146,12 +171,13 @@ def _own_tangents(effect: AbstractEffect, vector: Any, seeds: Any, joint: System
 
 
 @kept_jit
-def _followed(effect: AbstractEffect, joint: System, rows: Any, substeps: int) -> tuple[Any, ...]:
-    return _states(effect, joint, rows, substeps)
+def _followed(effect: AbstractEffect, joint: System, rows: Any, substeps: int, begun: Any) -> tuple[Any, ...]:
+    return _states(effect, joint, rows, substeps, begun)
 
 
-def _states(effect: AbstractEffect, joint: System, rows: Any, substeps: int) -> tuple[Any, ...]:
-    """Internal states by Heun's method, the motion straight between its samples in ``substeps`` parts."""
+def _states(effect: AbstractEffect, joint: System, rows: Any, substeps: int, begun: Any = None) -> tuple[Any, ...]:
+    """Internal states by Heun's method, the motion straight between its samples in ``substeps`` parts; ``begun`` (S,) is how far
+    they are from rest at the first of them."""
     if not effect.states:
         return ()
 
@@ -177,5 +203,6 @@ def _states(effect: AbstractEffect, joint: System, rows: Any, substeps: int) -> 
 
     begin = effect.start(instant(tuple(v[0] for v in rows)))
     begin = tuple(jnp.asarray(s, dtype=rows[1].dtype) for s in begin)
+    begin = begin if begun is None else tuple(s + begun[i] for i, s in enumerate(begin))
     _, path = jax.lax.scan(step, begin, (tuple(v[:-1] for v in rows), tuple(v[1:] for v in rows)))
     return tuple(jnp.concatenate([b[None], path[:, i]]) for i, b in enumerate(begin))

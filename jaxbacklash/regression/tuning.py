@@ -2,11 +2,13 @@
 
 How far friction gives before it slips, or how round its knee is, does not show at zero strength, so no score test can rank such a
 law. Weak-form regression can: the law's state is followed along the measured motion, and its
-parameters move until its torque explains what the model leaves, the joint's own parameters moving with them.
+parameters move until its torque explains what the model leaves, the joint's own parameters moving with them. Of a law whose
+states go on for long by themselves, where these began is regressed as well: a record need not begin at rest.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -50,9 +52,9 @@ def tune(form: WeakForm, system: System, free: tuple[str, ...], variants: list[A
 def sized(form: WeakForm, system: System, free: tuple[str, ...], effect: AbstractEffect) -> AbstractEffect:
     """The law at the strength that the record asks for, its shape kept: all of its torques grow together."""
     left, by = form.missing(system, free)
-    design = np.column_stack([by, form.column(effect, system)])
+    design = np.column_stack([by, form.column(effect, system), form.rung(effect, system)])
     white = whitener(left - design @ np.linalg.lstsq(design, left, rcond=None)[0])
-    factor = float(np.linalg.lstsq(white(design), white(left), rcond=None)[0][-1])
+    factor = float(np.linalg.lstsq(white(design), white(left), rcond=None)[0][by.shape[1]])
     if not np.isfinite(factor) or factor <= 0.0:
         return effect
     return stronger(effect, factor)
@@ -74,15 +76,20 @@ def _round(
     """
     reach = np.log(factor)
     left, by = form.missing(system, free)
-    design = np.column_stack([by, form.column(effect, system)])
+    design = np.column_stack([by, form.column(effect, system), form.rung(effect, system)])
     white = whitener(left - design @ np.linalg.lstsq(design, left, rcond=None)[0])
-    basis = np.linalg.qr(white(by))[0]
+    beside = white(by)
 
-    def project(rows: np.ndarray) -> np.ndarray:
-        rows = white(rows)
-        return rows - basis @ (basis.T @ rows)
+    def projection(law: AbstractEffect) -> Callable[[np.ndarray], np.ndarray]:
+        # What the model's own parameters make up for, and where the law's states began.
+        basis = np.linalg.qr(np.column_stack([beside, white(form.rung(law, system))]))[0]
 
-    target = project(left)
+        def project(rows: np.ndarray) -> np.ndarray:
+            rows = white(rows)
+            return rows - basis @ (basis.T @ rows)
+
+        return project
+
     described, present = free_specs(effect), values(effect)
     index = [list(specs(effect)).index(n) for n in described]
     # What is positive and has no upper bound moves by factors.
@@ -111,14 +118,16 @@ def _round(
             seeds[np.arange(len(index)), index] = chain
             # What cannot be followed explains nothing.
             torque, columns = (np.where(np.abs(v) < RUNAWAY, v, 0.0) for v in own_tangents(law, system, seeds, form.motion))
-            seen[p.tobytes()] = project(form.average(torque)) - target, project(form.average(columns).T)
+            project = projection(law)
+            seen[p.tobytes()] = project(form.average(torque) - left), project(form.average(columns).T)
         return seen[p.tobytes()]
 
     found = least_squares(lambda p: both(p)[0], first, jac=lambda p: both(p)[1], bounds=bounds, max_nfev=evaluations)
     effect = at(found.x)[0]
     rest = left - form.column(effect, system)
-    change = np.linalg.lstsq(white(by), white(rest), rcond=None)[0]
-    return effect, _moved(system, free, change), rest - by @ change
+    design = np.column_stack([by, form.rung(effect, system)])
+    change = np.linalg.lstsq(white(design), white(rest), rcond=None)[0]
+    return effect, _moved(system, free, change[: by.shape[1]]), rest - design @ change
 
 
 def _moved(system: System, free: tuple[str, ...], change: np.ndarray) -> System:

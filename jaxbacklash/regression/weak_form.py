@@ -19,7 +19,7 @@ from ..parameters import free_specs, ravel, specs
 from ..records import Record
 from ..signals.bump import HALF_WIDTH
 from ..system import System
-from .along_motion import Motion, motion, own_torques, torques
+from .along_motion import Motion, motion, own_torques, ringing, torques
 from .averaged import Averaged
 
 ORDER = 8
@@ -40,6 +40,7 @@ class WeakForm(Averaged):
         self.motion: Motion = motion(record) if quicker is None else quicker.motion
         self.blind = record.kind == "transmitted"  # the link is not seen, so there is nothing to regress on
         self._columns: dict[str, tuple[np.ndarray, np.ndarray]] = {}
+        self._rung: dict[str, tuple[np.ndarray, np.ndarray]] = {}
         self._kept: dict[str, Any] = {}
         self._last: tuple[System, tuple[str, ...], Any] | None = None
 
@@ -75,6 +76,23 @@ class WeakForm(Averaged):
     def column(self, effect: AbstractEffect, system: System) -> np.ndarray:
         """Torque of an effect on the measured motion, under the bump (R,)."""
         return self.average(_bounded(own_torques([effect], system, self.motion)[0]))
+
+    def rung(self, effect: AbstractEffect, system: System) -> np.ndarray:
+        """Under the bump (R, S), what a law that rings adds on the measured motion for each of its states that does not begin at
+        rest; no columns for one that does not ring."""
+        if not effect.rings:
+            return np.zeros((self.acceleration.size, 0))
+        return self.average(_bounded(ringing([effect], system, self.motion)[0])).T
+
+    def begun(self, effect: AbstractEffect, system: System, free: tuple[str, ...]) -> np.ndarray:
+        """How far the states (S,) of a law that rings are from rest at the first sample, regressed beside a model."""
+        left, by = self.missing(system, free)
+        rung = self.rung(effect, system)
+        design = np.column_stack([by, self.column(effect, system), rung])
+        white = whitener(left - design @ np.linalg.lstsq(design, left, rcond=None)[0])
+        found = np.linalg.lstsq(white(design), white(left), rcond=None)[0][by.shape[1] :]
+        # The law's own strength is left as it is: its states are for the torque that it makes at the strength found.
+        return found[1:] / found[0] if found[0] > 0.0 else np.zeros(rung.shape[1])
 
     def choose(
         self, system: System, free: tuple[str, ...], variants: list[AbstractEffect], keep: int = 1
@@ -115,6 +133,9 @@ class WeakForm(Averaged):
         if name not in self._columns or not np.array_equal(self._columns[name][0], told):
             self._columns[name] = told, self.average(_bounded(own_torques(variants, system, self.motion))).T
         columns = self._columns[name][1]
+        if variants[0].rings:
+            rung = self._rung_by(variants, system)
+            return np.array([_explained(left, by, np.column_stack([c, r])) for c, r in zip(columns.T, rung)])
         white = whitener(left - by @ np.linalg.lstsq(by, left, rcond=None)[0])
         left, by, columns = white(left), white(by), white(columns)
         basis = np.linalg.qr(by)[0]
@@ -123,6 +144,30 @@ class WeakForm(Averaged):
         fall = np.where(size > 0.0, columns.T @ left / np.where(size > 0.0, size, 1.0), 0.0)
         signed = np.array([fixed_sign(v) for v in variants])
         return np.where(signed, np.maximum(fall, 0.0), np.abs(fall))
+
+    def _rung_by(self, variants: list[AbstractEffect], system: System) -> np.ndarray:
+        """What each variant of a law that rings adds under the bump (K, R, S), made once for the same variants."""
+        name, told = canonical_name(variants[0]), np.stack([ravel(v) for v in variants])
+        if name not in self._rung or not np.array_equal(self._rung[name][0], told):
+            self._rung[name] = told, self.average(_bounded(ringing(variants, system, self.motion))).transpose(0, 2, 1)
+        return self._rung[name][1]
+
+
+def _explained(left: np.ndarray, by: np.ndarray, columns: np.ndarray) -> float:
+    """Multiple correlation of a law that rings, ``columns`` (R, 1 + S) its torque and what it does of itself, with what a model
+    leaves (R,) whatever its parameters; none where that torque would have to count below zero.
+
+    The torque of such a law is a narrow band, which a filter that whitens all that is left would take away: rows are whitened
+    as what is left beside the law.
+    """
+    design = np.column_stack([by, columns])
+    white = whitener(left - design @ np.linalg.lstsq(design, left, rcond=1e-10)[0])
+    left, design = white(left), white(design)
+    share = np.linalg.lstsq(design, left, rcond=1e-10)[0]
+    if share[by.shape[1]] <= 0.0:
+        return 0.0
+    less, more = (left - d @ np.linalg.lstsq(d, left, rcond=1e-10)[0] for d in (design[:, : by.shape[1]], design))
+    return float(np.sqrt(max(1.0 - (more @ more) / max(float(less @ less), 1e-300), 0.0)))
 
 
 def _bounded(torques: np.ndarray) -> np.ndarray:
