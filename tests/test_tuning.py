@@ -55,7 +55,7 @@ def test_the_right_law_is_tuned_to_its_values(name):
     assert joint["stiffness"] == pytest.approx(RIG.stiffness, rel=0.01)
 
 
-@pytest.mark.parametrize("seed", [2, 4])
+@pytest.mark.parametrize("seed", [2, 3])
 def test_what_swings_behind_the_link_is_found_in_a_decay_that_began_with_it_away_from_rest(seed):
     """Two masses let go from anywhere (an exact solution): the law's states at the first sample are regressed with it."""
     one = make_likeness("two_modes", seed)
@@ -65,7 +65,7 @@ def test_what_swings_behind_the_link_is_found_in_a_decay_that_began_with_it_away
     tuned = tune(form, base, free, shapes)
     # Which part of the two frequencies is the joint's a decay does not tell; that there are two it does.
     rows = form.acceleration.size
-    assert form.evidence(base, free, [tuned.effect]) > 0.5 * rows
+    assert form.evidence(base, free, shapes) > 0.5 * rows
     assert np.any(form.begun(tuned.effect, base, free) != 0.0)
 
 
