@@ -26,6 +26,7 @@ from typing import Any
 
 import equinox as eqx
 import jax
+import jax.numpy as jnp
 import numpy as np
 from jax.stages import Compiled, Lowered
 
@@ -60,6 +61,7 @@ def kept_jit(function: Callable[..., Any], lasting: Callable[..., bool] = lambda
     ``fetch`` does so only where the program is kept. Where ``lasting`` says of the same arguments that they will be computed with
     for long, a program is compiled for that even in a process that is to compile fast.
     """
+    together: Any = None
     jit: Any = eqx.filter_jit  # its types leave out what it hands on to `jax.jit`
     jitted, jitted_to_last = jit(function), jit(function, compiler_options=LASTING)
     programs: dict[Key, Future[Any]] = {}
@@ -98,6 +100,8 @@ def kept_jit(function: Callable[..., Any], lasting: Callable[..., bool] = lambda
 
     @functools.wraps(function)
     def call(*args: Any) -> Any:
+        if lane.ask is not None and not any(isinstance(leaf, jax.core.Tracer) for leaf in jax.tree.leaves(args)):
+            return lane.ask(call, args)
         program, arrays = made(args)
         return program(arrays) if isinstance(program, _Program) else program(*args)
 
@@ -111,8 +115,55 @@ def kept_jit(function: Callable[..., Any], lasting: Callable[..., bool] = lambda
             if folder is not None and _path(function, args, _kinds(jax.tree.leaves(args)), folder).exists():
                 made(args)
 
-    call.programs, call.ready, call.fetch = programs, ready, fetch  # type: ignore[attr-defined]
+    def on_lanes(args: Any, count: Any) -> Any:
+        """The same of several arguments in one program, whose arrays are stacked on a leading axis; ``count`` are there."""
+        nonlocal together
+        if together is None:
+            over: Any = functools.partial(_over_lanes, function)
+            over.__module__, over.__qualname__ = function.__module__, f"{function.__qualname__}.on_lanes"
+            over.__name__ = over.__qualname__
+            together = kept_jit(over, lambda args, count: lasting(*args))
+        return together(args, count)
+
+    call.programs, call.ready, call.fetch, call.on_lanes = programs, ready, fetch, on_lanes  # type: ignore[attr-defined]
     return call
+
+
+class _Lane(threading.local):
+    """What a thread is told that works beside others on the same: ``ask``, called with a kept function and its arguments in
+    place of computing at once, see `jaxbacklash.lockstep`."""
+
+    ask: Callable[[Any, Any], Any] | None = None
+
+
+lane = _Lane()
+
+
+def _over_lanes(function: Callable[..., Any], args: Any, count: Any) -> Any:
+    """``function`` of each lane in turn: every one takes as many steps as it needs, and of lanes no more than there are."""
+    leaves, structure = jax.tree.flatten(args)
+    arrays = [leaf for leaf in leaves if _is_array(leaf) or isinstance(leaf, jax.core.Tracer)]
+    size = arrays[0].shape[0]
+
+    frame: Any = None
+
+    def of_one(own: list[Any]) -> list[Any]:
+        nonlocal frame
+        taken = iter(own)
+        whole = [next(taken) if _is_array(leaf) or isinstance(leaf, jax.core.Tracer) else leaf for leaf in leaves]
+        found = function(*jax.tree.unflatten(structure, whole))
+        frame = jax.tree.structure(found)
+        return jax.tree.leaves(found)
+
+    one = jax.jit(of_one)  # traced once, for the shapes and for the loop
+    shapes = jax.eval_shape(one, [jax.ShapeDtypeStruct(a.shape[1:], a.dtype) for a in arrays])
+    empty = [jnp.zeros((size, *s.shape), s.dtype) for s in shapes]
+
+    def turn(k: Any, found: list[Any]) -> list[Any]:
+        new = one([jax.lax.dynamic_index_in_dim(a, k, 0, keepdims=False) for a in arrays])
+        return [jax.lax.dynamic_update_index_in_dim(f, value, k, 0) for f, value in zip(found, new)]
+
+    return jax.tree.unflatten(frame, jax.lax.fori_loop(jnp.asarray(0, jnp.int32), count, turn, empty))
 
 
 lasting_jit = functools.partial(kept_jit, lasting=lambda *args: True)

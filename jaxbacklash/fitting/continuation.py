@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from ..parameters import specs, values, with_values
 from ..shooting.information import freedom
 from ..shooting.levenberg import Levenberg, Minimum, minimise
 from ..shooting.multiple_shooting import tie_weights
-from ..shooting.problem import Problem, Unknowns
+from ..shooting.problem import Problem, Unknowns, changed
 from ..system import System
 from .friction_homotopy import with_friction_widths
 from .settings import (
@@ -265,7 +265,7 @@ def log_evidence(problem: Problem, minimum: Minimum) -> float:
 
 def tied(problem: Problem, tie: float) -> Problem:
     """The same problem with ties of another weight."""
-    return replace(problem, tie=np.asarray(float(tie)))
+    return changed(problem, tie=np.asarray(float(tie)))
 
 
 def _with_friction_width(problem: Problem, speeds: Mapping[str, float], begin: Unknowns) -> Problem:

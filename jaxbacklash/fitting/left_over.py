@@ -11,11 +11,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-import equinox as eqx
 import numpy as np
 
 from ..records import Record
-from ..shooting.problem import Problem
+from ..shooting.problem import Problem, changed
 from ..shooting.windows import Layout, Windows
 from ..signals import estimate_noise, rounding_noise
 from .score import Score, begin_anew, score
@@ -42,7 +41,7 @@ def settle_noise(found: Found, layout: Layout, scored: Sequence[Score], records:
         if all(f == 1.0 for f in factors):
             break
         layout = replace(layout, noise=tuple(f * n for f, n in zip(factors, layout.noise)))
-        problem = eqx.tree_at(lambda p: p.windows, found.problem, _noisier(found.problem.windows, layout, factors))
+        problem = changed(found.problem, windows=_noisier(found.problem.windows, layout, factors))
         found = found.again(problem)
         scored, _ = score(problem, begin_anew(problem, found.unknowns.theta), layout, group=group)
     return Settled(found, layout, tuple(scored))
@@ -146,4 +145,4 @@ def _noisier(windows: Windows, layout: Layout, factors: Sequence[float]) -> Wind
     weight = np.array(windows.weight)
     for first, count, factor in zip(layout.first, layout.windows, factors):
         weight[first : first + count + 1] /= factor
-    return eqx.tree_at(lambda w: (w.weight, w.drop), windows, (weight, np.asarray(windows.drop) / float(np.mean(factors))))
+    return changed(windows, weight=weight, drop=np.asarray(windows.drop) / float(np.mean(factors)))

@@ -18,7 +18,7 @@ from ..parameters import values, with_values
 from ..shooting.lengths import SCORE_WINDOW
 from ..shooting.levenberg import Levenberg, minimise
 from ..shooting.multiple_shooting import residuals
-from ..shooting.problem import Problem, Unknowns
+from ..shooting.problem import Problem, Unknowns, changed
 from ..shooting.windows import Layout
 from ..showing import Shown
 from .continuation import tied
@@ -110,11 +110,10 @@ def measures(observed: str) -> str:
 def frozen(problem: Problem, theta: Any) -> Problem:
     """The same problem with its parameters fixed at ``theta`` (shapes unchanged, so nothing is compiled anew)."""
     q = problem.directions.shape[1]
-    return eqx.tree_at(
-        lambda p: (p.base, p.directions, p.shrink, p.active),
-        problem,
-        (problem.parameters(theta), np.zeros(problem.directions.shape), np.zeros(q, dtype=bool), np.asarray(0)),
-    )
+    return changed(
+        problem, base=problem.parameters(theta), directions=np.zeros(problem.directions.shape), shrink=np.zeros(q, dtype=bool),
+        active=np.asarray(0),
+    )  # fmt: skip
 
 
 def begin_anew(problem: Problem, theta: Any) -> Unknowns:
@@ -122,7 +121,7 @@ def begin_anew(problem: Problem, theta: Any) -> Unknowns:
     model's error is the same whoever asks for it, whatever its fit has made of the windows."""
     still = frozen(problem, theta)
     system = with_values(problem.system, dict(zip(values(problem.system), np.asarray(still.base))))
-    guess = first_guess(eqx.tree_at(lambda p: p.system, still, system))
+    guess = first_guess(changed(still, system=system))
     return Unknowns(np.asarray(theta), guess.starts, guess.coefficients)
 
 
@@ -150,7 +149,7 @@ def score(
     for first, count in zip(layout.first, layout.windows):
         index = np.arange(count)
         tie[first : first + count] *= through | (index % group != group - 1)
-    still = eqx.tree_at(lambda p: p.windows.tie, still, tie)
+    still = changed(still, windows=changed(still.windows, tie=tie))
     begin = Unknowns(np.zeros(unknowns.theta.shape), unknowns.starts, unknowns.coefficients)
     near = NEAR * max(1, int(problem.windows.used))
     # An error of a model that is clearly wrong is quoted to three digits: its starts need not creep on for a fourth.

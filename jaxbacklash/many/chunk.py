@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 
+from ..lockstep import in_lockstep
 from .one import row_of, warnings_noted
 from .rows import Row
 from .wanted import Source, Wanted
@@ -15,8 +17,7 @@ Item = tuple[int, Source]
 def rows_of(wanted: Wanted, items: Sequence[Item]) -> Iterator[tuple[int, Row]]:
     """The rows of some records, each with its record's number."""
     with warnings_noted():
-        for number, source in items:
-            yield number, row_of(wanted, source)
+        yield from in_lockstep([(number, partial(row_of, wanted, source)) for number, source in items])
 
 
 def begin(wanted: Wanted) -> None:

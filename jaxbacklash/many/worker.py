@@ -6,6 +6,7 @@ loaded a second time, and it ends by itself when the process that asked is gone.
 
 from __future__ import annotations
 
+import gc
 import os
 import pickle
 import struct
@@ -66,6 +67,10 @@ def serve() -> None:
     threading.Thread(target=listen, daemon=True).start()
     from .chunk import begin, rows_of
 
+    # What is loaded by now stays: looking through it for garbage is a fifth of the time.
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(100_000, 50, 100)
     while True:
         there.acquire()
         wanted, items = asked.pop(0)

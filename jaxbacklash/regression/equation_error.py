@@ -22,6 +22,9 @@ from ..records import Record
 from ..signals import choose_intervals, fit_spline, span
 from .averaged import Averaged
 
+ROOM = 500_000
+"""Samples of several plays that are looked at together at most."""
+
 
 @dataclass(frozen=True)
 class Start:
@@ -67,17 +70,21 @@ def estimate(
     units = [_unit(effect, name) for effect, name in strengths]
     steady = [weak.steady(unit, reach) for unit in units]
 
-    def solve(half_play: float) -> tuple[float, np.ndarray]:
+    def rows(half_play: float, pressed: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """The regression at half a play, its columns and its right side; ``pressed`` the contact's column where it is known."""
         columns = [damping_column]
         if spring:
-            columns.append(weak.average(_dead_zone(weak.z, half_play)))
+            columns.append(weak.average(_dead_zone(weak.z, half_play)) if pressed is None else pressed)
         if inertia is None:
             columns.append(weak.acceleration)
             right = weak.force
         else:
             right = weak.force - inertia * weak.acceleration
         columns += [-weak.torque(u, half_play) if known is None else -known for u, known in zip(units, steady)]
-        matrix = np.stack(columns, axis=1)
+        return np.stack(columns, axis=1), right
+
+    def solve(half_play: float) -> tuple[float, np.ndarray]:
+        matrix, right = rows(half_play)
         scale = np.linalg.norm(matrix, axis=0)
         scale[scale == 0.0] = 1.0
         solution = np.linalg.lstsq(matrix / scale, right, rcond=None)[0] / scale
@@ -87,7 +94,13 @@ def estimate(
     half = 0.0
     if spring and play:
         grid = reach * np.linspace(0.01, 0.97, plays)
-        misfits = [solve(h)[0] for h in grid]
+        together = max(1, ROOM // weak.z.size)
+        misfits = np.concatenate(
+            [
+                _misfits([rows(h, pressed) for h, pressed in zip(some, weak.average(_dead_zone(weak.z, some[:, None])))])
+                for some in (grid[k : k + together] for k in range(0, plays, together))
+            ]
+        )
         k = int(np.argmin(misfits))
         low, high = grid[max(k - 1, 0)], grid[min(k + 1, grid.size - 1)]
         half = float(optimize.minimize_scalar(lambda h: solve(h)[0], bounds=(low, high), method="bounded").x)
@@ -107,6 +120,18 @@ def estimate(
         min(misfit, 1.0),
         tuple(_started(effect, strengths, rest) for effect in effects),
     )
+
+
+def _misfits(regressions: Sequence[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
+    """Shares of the right sides (K,) that K regressions leave, by their normal equations, all at once: near enough to choose."""
+    matrix, right = (np.stack(parts) for parts in zip(*regressions))
+    scale = np.linalg.norm(matrix, axis=1, keepdims=True)
+    matrix = matrix / np.where(scale == 0.0, 1.0, scale)
+    normal = np.swapaxes(matrix, 1, 2) @ matrix
+    solution = np.linalg.pinv(normal, rcond=1e-14, hermitian=True) @ (np.swapaxes(matrix, 1, 2) @ right[:, :, None])
+    residual = right - (matrix @ solution)[:, :, 0]
+    found: np.ndarray = np.sum(residual**2, axis=1) / (np.sum(right**2, axis=1) + 1e-300)
+    return found
 
 
 def _strength(effect: AbstractEffect) -> str | None:
@@ -134,7 +159,7 @@ def _started(effect: AbstractEffect, strengths: list[tuple[AbstractEffect, str]]
     return effect
 
 
-def _dead_zone(z: np.ndarray, half_play: float) -> np.ndarray:
+def _dead_zone(z: np.ndarray, half_play: float | np.ndarray) -> np.ndarray:
     return z - np.clip(z, -half_play, half_play)
 
 

@@ -19,6 +19,7 @@ from typing import Any
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 from ..mechanics import Drive
 from ..solvers.substeps import run_panels
@@ -147,11 +148,13 @@ def weighed(value: Array, weight: Array) -> Array:
 def tie_weights(problem: Problem, states: int) -> Array:
     """How sharply each window's end is tied to the next window's start, (W, n) for ``states`` = n."""
     w = problem.windows
+    # Of plain arrays NumPy makes it at once, without a program for each of these operations.
+    xp: Any = np if all(isinstance(a, np.ndarray | np.generic) for a in (problem.tie, w.drop, w.tie)) else jnp
     # Other internal states have no common scale; a loose tie is enough for what they carry from window to window.
-    sharp = problem.tie * jnp.concatenate([w.drop, jnp.full(states - w.drop.shape[0], w.drop[1])])
-    reach = jnp.asarray(problem.system.reach)
-    kept = jnp.maximum(problem.tie, 1.0) ** 2 * KEPT / reach
-    return w.tie[:, None] * jnp.where(jnp.isinf(reach), sharp, kept)
+    sharp = problem.tie * xp.concatenate([w.drop, xp.full(states - w.drop.shape[0], w.drop[1])])
+    reach = xp.asarray(problem.system.reach)
+    kept = xp.maximum(problem.tie, 1.0) ** 2 * KEPT / reach
+    return w.tie[:, None] * xp.where(xp.isinf(reach), sharp, kept)
 
 
 class Shot(eqx.Module):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 import equinox as eqx
 
@@ -19,6 +19,23 @@ class Unknowns(eqx.Module):
     theta: Array
     starts: Array
     coefficients: Array
+
+
+Part = TypeVar("Part", bound=eqx.Module)
+
+
+def changed(module: Part, **fields: Any) -> Part:
+    """The same module with other fields: what `equinox.tree_at` does, without the milliseconds that its checks take.
+
+    Examples
+    --------
+    >>> changed(Unknowns(1.0, 2.0, 3.0), theta=4.0).theta
+    4.0
+    """
+    new: Part = object.__new__(type(module))
+    for name, value in (vars(module) | fields).items():
+        object.__setattr__(new, name, value)
+    return new
 
 
 class Problem(eqx.Module):

@@ -16,6 +16,7 @@ import equinox as eqx
 import numpy as np
 from scipy.interpolate import BSpline
 
+from ..compiled import lane
 from ..errors import BadInput
 from ..records import Record
 from ..records.force import force_edges, way
@@ -35,6 +36,8 @@ SPEED = 0.2
 """Share of a window over which a jump of the speed where windows join makes the jump of place that counts as much."""
 LEAST_ROOM = 512
 """Windows that the smallest compiled program has room for."""
+ROOMS = (32, 64, 96, 128, 192, 256, 384, 512, 768, 1024)
+"""The same, where many records are worked on side by side."""
 SIZES = (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256)
 """Samples that a window may have: few sizes, so that records of many rates run in the same compiled program."""
 PARTS = (1, 2, 3, 4, 6, 8, 12, 16)
@@ -117,6 +120,8 @@ def bucket(count: int) -> int:
     Chunks that hold no data are skipped, so that room costs little, and a record of another length hardly ever compiles anew.
     """
     together = CHUNK * len(sharing())
+    if lane.ask is not None:  # records of like length side by side: room costs them more than a program does
+        return next((size for size in ROOMS if size >= count and size % together == 0), together * -(-count // together))
     size = -(-LEAST_ROOM // together) * together
     while size < count:
         size *= 2

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import gammaincinv
 
+from .remembered import remembered
 from .resolution import rounding_noise
 from .smoothing import choose_intervals, fit_spline, span
 
@@ -57,15 +58,17 @@ def estimate_noise(t: np.ndarray, values: np.ndarray, *, window: float | None = 
     t, values : uniform samples, shape (N,), t in s, values in any unit
     window : length over which knot counts are chosen [s]; default `span`
     """
-    level, quiet, spacing = _left(t, values, window)
+    level, correlations, count, spacing = _left(t, values, window)
     least = rounding_noise(values)
-    allowed = max(ALIKE, SURE / np.sqrt(quiet.size))
-    told = bool(np.all(np.abs(_correlations(quiet) - _of_noise_alone(t, spacing)) < allowed))
+    allowed = max(ALIKE, SURE / np.sqrt(count))
+    told = bool(np.all(np.abs(np.array(correlations) - np.array(_of_noise_alone(t, spacing))) < allowed))
     return NoiseEstimate(level, told or level <= least, least)
 
 
-def _left(t: np.ndarray, values: np.ndarray, window: float | None) -> tuple[float, np.ndarray, float]:
-    """Level of the noise, the rest of ordinary pieces (P, L), and the spacing [s] of the knots of the spline that left it."""
+@remembered
+def _left(t: np.ndarray, values: np.ndarray, window: float | None) -> tuple[float, tuple[float, ...], int, float]:
+    """Level of the noise, the autocorrelations of what a spline leaves in ordinary pieces at the first `LAGS` lags, of how many
+    samples they are, and the spacing [s] of the spline's knots."""
     window = span((t[-1] - t[0]) / (t.size - 1)) if window is None else window
     spacing = window / choose_intervals(t, values, window)
     fitted = fit_spline(t, values, t[0], spacing)
@@ -76,14 +79,16 @@ def _left(t: np.ndarray, values: np.ndarray, window: float | None) -> tuple[floa
     rows = residual[: pieces * length].reshape(pieces, -1)
     energy = np.sum(rows**2, axis=1)
     level = fitted.noise if pieces < FEW_PIECES else float(np.sqrt(np.median(energy) / _chi2_median(length * per_sample)))
-    return max(level, rounding_noise(values)), rows[energy <= QUIET_ENOUGH * np.median(energy)], spacing
+    quiet = rows[energy <= QUIET_ENOUGH * np.median(energy)]
+    return max(level, rounding_noise(values)), tuple(map(float, _correlations(quiet))), quiet.size, spacing
 
 
-def _of_noise_alone(t: np.ndarray, spacing: float) -> np.ndarray:
+@remembered
+def _of_noise_alone(t: np.ndarray, spacing: float) -> tuple[float, ...]:
     """Autocorrelations of what a spline with these knots leaves of white noise, at the first `LAGS` lags."""
     rng = np.random.default_rng(0)
     rows = rng.standard_normal((max(1, DRAWN // t.size), t.size))
-    return _correlations(np.stack([row - fit_spline(t, row, t[0], spacing)(t) for row in rows]))
+    return tuple(map(float, _correlations(np.stack([row - fit_spline(t, row, t[0], spacing)(t) for row in rows]))))
 
 
 def _correlations(rows: np.ndarray) -> np.ndarray:

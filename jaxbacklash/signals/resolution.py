@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from .remembered import remembered
+
 MOST_DECIMALS, MOST_DIGITS = 12, 12
 """Decimals and digits that are looked for: values with more were hardly written for a person."""
 EXACT = 1e-4
@@ -24,6 +26,7 @@ UNIFORM = 1.0 / np.sqrt(12.0)
 """Standard deviation of what rounding to a step takes away or adds, as a share of the step."""
 
 
+@remembered
 def rounding_noise(values: np.ndarray) -> float:
     """Standard deviation of the error that writing or counting has left in ``values`` (N,), in their unit.
 

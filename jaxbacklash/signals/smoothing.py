@@ -14,6 +14,8 @@ import numpy as np
 from scipy.interpolate import BSpline
 from scipy.linalg import cho_solve_banded, cholesky_banded
 
+from .remembered import remembered
+
 DEGREE = 5
 SPAN, SPAN_SAMPLES = 0.1, 16
 """Length over which knots are counted [s], and the fewest samples in it: of five, as in 0.1 s at 50 Hz, a quintic spline with a
@@ -101,6 +103,7 @@ def _least_squares(samples: int, first: float, spacing: float) -> tuple[Any, Any
     return design, transposed, cholesky_banded(bands)
 
 
+@remembered
 def choose_intervals(t: np.ndarray, values: np.ndarray, window: float, *, longest: int = 20_000) -> int:
     """Knot intervals per window such that the spline does not smooth the signal away.
 

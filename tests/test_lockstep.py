@@ -1,0 +1,79 @@
+"""Work in lockstep: the same results as alone, whoever stands beside, and errors where they belong."""
+
+import jax
+import numpy as np
+import pytest
+
+import jaxbacklash as jb
+from jaxbacklash.compiled import kept_jit
+from jaxbacklash.lockstep import in_lockstep
+from jaxbacklash.many.chunk import rows_of
+from jaxbacklash.many.wanted import Wanted
+
+CALLS = []
+
+
+@kept_jit
+def growth(values, factor, power):
+    CALLS.append(values.shape)  # while tracing alone
+    return {"sum": (factor * values**power).sum(), "values": values * factor}
+
+
+@pytest.fixture
+def unkept():
+    """Programs of this process alone: one that an earlier run has kept would not be traced."""
+    folder = jax.config.jax_compilation_cache_dir
+    jax.config.update("jax_compilation_cache_dir", None)
+    yield
+    jax.config.update("jax_compilation_cache_dir", folder)
+
+
+def work(k):
+    def of_it():
+        first = growth(np.arange(3.0) + k, np.asarray(2.0), 2)
+        if k % 2:  # half of them ask once more
+            return float(growth(np.asarray(first["values"]), np.asarray(3.0), 2)["sum"])
+        return float(first["sum"])
+
+    return of_it
+
+
+def test_lanes_are_answered_as_each_would_be_alone(unkept):
+    alone = [work(k)() for k in range(70)]
+    CALLS.clear()
+    together = dict(in_lockstep([(k, work(k)) for k in range(70)]))
+    assert [together[k] for k in range(70)] == pytest.approx(alone, rel=1e-15)
+    assert len(CALLS) == 1
+
+
+def test_an_error_in_one_lane_is_raised_and_one_that_is_caught_stops_nothing(unkept):
+    def fails():
+        raise ValueError("own")
+
+    def catches():
+        try:
+            growth("no array", np.asarray(1.0), 2)
+        except Exception as error:
+            return type(error).__name__
+        return None
+
+    with pytest.raises(ValueError, match="own"):
+        list(in_lockstep([("a", fails)]))
+    told = dict(in_lockstep([("a", catches), ("b", work(0))]))
+    assert told["a"] is not None
+    assert told["b"] == work(0)()
+
+
+@pytest.mark.slow
+def test_a_row_is_that_of_a_fit_alone_and_does_not_depend_on_its_company():
+    record, heldout = jb.demo_records()
+    records = [record.between(0.0, 2.0), heldout.between(0.0, 2.0), record.between(2.0, 4.0), record.between(0.0, 1.5)]
+    wanted = Wanted("fit", inertia=3.16, effects=("gravity",))
+    rows = dict(rows_of(wanted, list(enumerate(records))))
+    assert dict(rows_of(wanted, [(1, records[1])]))[1] == rows[1]
+    for number, one in enumerate(records):
+        alone = jb.fit(one, inertia=3.16, effects=["gravity"])
+        for name, estimate in alone.parameters.items():
+            found = rows[number]["parameters"][name]
+            assert found["value"] == pytest.approx(estimate.value, abs=0.02 * estimate.stderr)
+            assert found["stderr"] == pytest.approx(estimate.stderr, rel=0.02)
