@@ -1,4 +1,5 @@
-"""Fits of drives with an encoder on motor and link, on records of another program and of practice."""
+"""Fits of drives with an encoder on motor and link, on records of another program and of practice; of one encoder, see
+`tests.test_drive_one_encoder`."""
 
 import importlib.util
 import json
@@ -64,6 +65,7 @@ def test_friction_of_the_motor_and_weight_of_the_link():
         ("q01", ()),
         ("q02", ("coulomb_motor",)),
         ("q03", (jb.Gravity(-1.0, 0.01),)),
+        ("q04", ("coulomb_motor",)),
         ("q05", ("coulomb_motor", "gravity")),
     ],
 )
@@ -117,17 +119,6 @@ def test_what_does_not_take_drives_says_so(work):
     one = jb.Record(record.t, {n: record.channels[n] for n in ("torque", "motor")}, "run.csv", ratio=50.0)
     with pytest.raises(jb.BadInput, match=r"run\.csv: is of a drive .* does not take so far; wanted jaxbacklash fit"):
         work(one)
-
-
-def test_one_encoder_is_refused():
-    rig, record = quick()
-    one = jb.Record(record.t, {n: record.channels[n] for n in ("torque", "motor")}, "run.csv", ratio=50.0)
-    with pytest.raises(jb.BadInput, match="is a drive with an encoder on the motor alone"):
-        jb.fit(one)
-    with pytest.raises(jb.BadInput, match="is a drive with an encoder on the motor alone"):
-        jb.fit(one, system=rig)
-    with pytest.raises(jb.BadInput, match="is a drive with an encoder on the motor alone"):
-        jb.compare(rig, one)
 
 
 def test_a_comparison_wants_both_of_a_drive():

@@ -106,7 +106,7 @@ def continued(
     way, speeds = _Way(first, last=SHARP if speeds else TIGHTEST), speeds or {}
     while (tie := way.next_tie()) is not None:
         begin = way.begin(tie, start)
-        at = _with_friction_width(tied(problem, tie), speeds, begin)
+        at = with_friction_width(tied(problem, tie), speeds, begin)
         how = Levenberg(limit=BETWEEN if tie < SHARP else LAST, atol=ROUGHLY)
         way.note(tie, at, minimise(at, begin, how))
     best = way.likeliest()
@@ -268,7 +268,8 @@ def tied(problem: Problem, tie: float) -> Problem:
     return changed(problem, tie=np.asarray(float(tie)))
 
 
-def _with_friction_width(problem: Problem, speeds: Mapping[str, float], begin: Unknowns) -> Problem:
+def with_friction_width(problem: Problem, speeds: Mapping[str, float], begin: Unknowns) -> Problem:
+    """A problem with its dry friction softened as far as its ties allow; ``speeds`` as `continued` takes them."""
     tie = float(problem.tie)
     if not speeds or tie >= SHARP:
         return problem

@@ -31,7 +31,7 @@ from .result import Fit
 from .score import Score, begin_anew, score
 from .search import Found, search, silent
 from .settings import EXPLAINED, SHORTEST
-from .setup import base_system, check_encoders, check_motion, free_names, make_problem
+from .setup import base_system, check_motion, free_names, make_problem
 from .stick_slip import sticks_and_slips
 
 ABSOLUTE = ("force", "transmitted", "drive")
@@ -218,7 +218,6 @@ def prepare(
 
     ``intervals`` asks for at least so many spline intervals a window, so that two records may share a compiled program.
     """
-    check_encoders(records)
     dt = records[0].dt
     window = score_window(dt, window)
     # Without the noise of a base motion a record says ten times more: its panels have to be finer.

@@ -20,11 +20,13 @@ from ..shooting.levenberg import Levenberg, Minimum, minimise
 from ..shooting.problem import Problem, Unknowns
 from ..shooting.windows import Windows
 from ..system import System
-from .continuation import Continued, Stop, continued, in_one_run, log_evidence, sharpened, tied
+from .continuation import Continued, Stop, continued, in_one_run, log_evidence, sharpened, tied, with_friction_width
 from .friction_homotopy import sliding_speeds
+from .hidden_motion import one_side
+from .hidden_search import near_by
 from .left_out import misfit, most_of_noise
 from .segment import determines, segment, variance_ratio
-from .settings import BETWEEN, CLOSELY, JOINED, LIKELY, LOOSEST, ROUGHLY, TIGHTEST, WITHIN_CHANCE
+from .settings import BETWEEN, CLOSELY, FINER, JOINED, LAST, LIKELY, LOOSE, LOOSEST, ROUGHLY, TIGHTEST, WITHIN_CHANCE
 from .setup import first_guess, make_problem
 from .stick_slip import search_stick_slip, sticks_and_slips
 
@@ -115,6 +117,8 @@ def search(
     if sticks_and_slips(system):
         return _stick_slip(problem, starts, seed, progress)
     guess = first_guess(problem)
+    if one_side(system):
+        return _one_side(problem, guess, free, seed, progress)
     if spare and starts > 1 and (enough := _from_the_first(problem, guess, seed, progress)) is not None:
         return enough
     short = segment(problem, guess) if rough or starts > 1 else None
@@ -214,6 +218,18 @@ def _elsewhere(problem: Problem, rng: np.random.Generator) -> np.ndarray:
     their scale."""
     shift = rng.uniform(-0.4, 0.6, problem.directions.shape[1]) * np.where(problem.shrink, 1.0, 0.3)
     return np.clip(shift, problem.lower, problem.upper)
+
+
+def _one_side(problem: Problem, guess: Unknowns, free: Sequence[str], seed: int, progress: Callable[[str, float], None]) -> Found:
+    """`search` for a drive of which motor or link is not seen: segments first, then the whole record from near its minimum."""
+    begin, steps = near_by(problem, guess, free, np.random.default_rng(seed), progress)
+    progress("fitting, the whole record", 0.55)
+    speeds = sliding_speeds(problem)
+    loose = minimise(with_friction_width(tied(problem, LOOSE), speeds, begin), begin, Levenberg(limit=LAST, atol=ROUGHLY))
+    found = _one_trajectory(problem, loose.value) or _continued(problem, loose.value, first=LOOSE / FINER)
+    if not np.isfinite(found.log_evidence):
+        raise NoAnswer(NOWHERE)
+    return Found(found, 1, 1, steps + int(loose.stats["steps"]) + _steps(found))
 
 
 def _stick_slip(problem: Problem, starts: int, seed: int, progress: Callable[[str, float], None]) -> Found:

@@ -15,11 +15,12 @@ from ..shooting.problem import Problem, Unknowns
 from .settings import TIMES, WELL_KNOWN, WINDOWS
 
 
-def segment(problem: Problem, guess: Unknowns) -> tuple[Problem, Unknowns] | None:
+def segment(problem: Problem, guess: Unknowns, another: int = 0) -> tuple[Problem, Unknowns] | None:
     """The problem and the first guess on the segment with the most motion, None where the record is short.
 
     Consecutive windows are taken, those over which the measured channel strays farthest from its mean, because a link that
-    moves much meets both edges. All arrays keep their shapes, so the program compiled for the record serves.
+    moves much meets both edges; ``another`` 1, 2, ... takes the next best that shares no window with those before. All arrays
+    keep their shapes, so the program compiled for the record serves.
     """
     w = problem.windows
     used = int(w.used)
@@ -30,7 +31,11 @@ def segment(problem: Problem, guess: Unknowns) -> tuple[Problem, Unknowns] | Non
     mean = np.sum(measured) / max(1, np.sum(weight))
     strayed = np.cumsum(np.sum(np.where(weight, (measured - mean) ** 2, 0.0), axis=1))
     over = strayed[WINDOWS - 2 :] - np.concatenate([[0.0], strayed[: 1 - WINDOWS]])
-    first = int(np.argmax(over[: used - WINDOWS + 1]))
+    over = np.array(over[: used - WINDOWS + 1])
+    for _ in range(another):
+        taken = int(np.argmax(over))
+        over[max(taken - WINDOWS + 1, 0) : taken + WINDOWS] = -np.inf
+    first = int(np.argmax(over))
 
     def own(values: np.ndarray, samples: int = WINDOWS) -> np.ndarray:
         values = np.asarray(values)

@@ -23,6 +23,7 @@ from ..regression.force_loop import read_loop
 from ..shooting.problem import Problem, Unknowns
 from ..shooting.windows import Windows
 from ..system import System, observe
+from .hidden_motion import carried, one_side
 from .settings import NEWTON, PERIOD, ROUNDING, UNLIKE_A_LOOP
 from .stick_slip import march, place, sticks_and_slips
 
@@ -80,7 +81,6 @@ def drive_system(
     """
     if model != "joint":
         raise BadInput(f"--model {model}: a drive (torque with motor or link) is fitted as a joint with play; leave --model out")
-    check_encoders([record])
     (motor_inertia, friction), start = start_of_drive(record)
     if inertia is not None:
         start = replace(start, inertia=inertia)
@@ -89,22 +89,6 @@ def drive_system(
                    observed=" ".join(record.observed_names))  # fmt: skip
     system = add_effects(joint, effects)
     return system, (() if inertia is not None else ("inertia",)) + free_names(system), start
-
-
-def check_encoders(records: Sequence[Record]) -> None:
-    """Refuse drives with one encoder: what the other would show is not searched for so far.
-
-    Raises
-    ------
-    BadInput
-        With the encoder that there is.
-    """
-    for record in records:
-        if record.kind == "drive" and len(record.observed_names) < 2:
-            raise BadInput(
-                f"{record.path or 'the record'}: is a drive with an encoder on the {record.observed_names[0]} alone, not "
-                "fitted so far; wanted columns motor and link"
-            )
 
 
 def stick_slip_system(
@@ -267,6 +251,8 @@ def first_guess(problem: Problem) -> Unknowns:
         return Unknowns(theta, np.asarray(march(problem, theta, w.coefficients)), np.asarray(w.coefficients))
     if system.motor is not None:
         zero = np.zeros(problem.directions.shape[1])
+        if one_side(system):
+            return Unknowns(zero, np.asarray(carried(problem, zero)[0]), np.asarray(w.coefficients))
         return Unknowns(zero, drive_at_rest(w, system, np.asarray(w.starts)), np.asarray(w.coefficients))
     y, dy = np.asarray(w.starts)
     if system.observed == "T":

@@ -12,6 +12,7 @@ import numpy as np
 from ..records import Record
 from ..signals import Bump
 from .equation_error import Start, estimate
+from .hidden_side import search_hidden
 
 
 def inertias(record: Record) -> tuple[float, float, float]:
@@ -43,7 +44,11 @@ def start_of_drive(record: Record) -> tuple[tuple[float, float], Start]:
 
     Parameters
     ----------
-    record : of a drive with an encoder on motor and link
+    record : of a drive with an encoder on motor, on link, or on both
     """
+    if record.relative is None:
+        found = search_hidden(record)
+        joint = Start(found.inertia, found.backlash, found.stiffness, found.damping, found.misfit)
+        return (found.motor_inertia, found.friction), joint
     motor_inertia, friction, inertia = inertias(record)
     return (motor_inertia, friction), estimate(record.on_its_base(), inertia=inertia)

@@ -1,0 +1,101 @@
+r"""Where windows of a drive with one encoder begin: a filter along the record finds the side that is not seen.
+
+Nothing shows the other side but what it does through the joint. An extended Kalman filter, a window at a time, carries the state
+of both sides on by the model and sets it right by the samples of each window: with prior covariance P, sensitivities C of the M
+samples to the window's start and their weights W,
+
+.. math:: s \leftarrow s + (I + P C^\top W C)^{-1} P C^\top W\,(y - h(s)),
+
+twice, since an edge of the play may lie between. What comes in between windows is what ties of a given weight let pass. It is
+where `jaxbacklash.fitting.setup.first_guess` begins.
+
+Source: Bell and Cathey, IEEE Trans. Automatic Control 38 (1993) 294, on the iterated filter as a Gauss-Newton method.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+
+from ..compiled import kept_jit
+from ..mechanics import Drive
+from ..shooting.chunks import scan_used
+from ..shooting.input_spline import local_coefficients
+from ..shooting.multiple_shooting import trajectory
+from ..shooting.problem import Problem
+from ..system import System
+from .settings import LOOSE
+
+Array = Any
+
+
+def one_side(system: System) -> bool:
+    """Whether this is a drive of which motor or link is not seen."""
+    return system.motor is not None and len(system.channels) == 1
+
+
+@kept_jit
+def carried(problem: Problem, theta: Array) -> tuple[Array, Array]:
+    """Starts (n, W) of all windows, as the filter has them, from the middle of the play at the beginning of each record; and
+    minus the log likelihood of the samples, but for a constant, as the filter predicts each window from those before.
+
+    Parameters
+    ----------
+    problem : of a drive with one encoder
+    theta : (q,) free parameters in units of their scale
+    """
+    w, system = problem.windows, problem.rebuild(theta)
+    local = local_coefficients(w, w.coefficients)
+    follows = jnp.concatenate([jnp.zeros(1), w.tie[:-1]])
+    n = len(system.state_names)
+    loose = jnp.zeros(n).at[:4].set((LOOSE * w.drop) ** -2)
+    at_first = _open(problem, system)
+
+    def step(carry: Any, at: Any) -> Any:
+        (state, spread), (t0, start, follow, own, force, measured, weight) = carry, at
+        fresh = jnp.stack(system.rest(t0, start[0], start[1], Drive(jnp.zeros_like(start[0]))))
+        prior = jnp.where(follow > 0.0, state, fresh)
+        spread = jnp.where(follow > 0.0, spread + jnp.diag(loose), jnp.diag(at_first))
+
+        def run(begin: Array) -> tuple[Array, Array]:
+            path = trajectory(problem, theta, begin, own, t0, force)
+            return jax.vmap(system.output)(path.times, path.states, path.drive).ravel(), jnp.stack(path.end)
+
+        def seen(begin: Array) -> Any:
+            (shown, end), push = jax.linearize(run, begin)
+            by_start, end_by_start = jax.vmap(push, out_axes=1)(jnp.eye(n))
+            weighted = by_start.T * weight**2
+            gain = jnp.linalg.inv(jnp.eye(n) + spread @ weighted @ by_start) @ spread
+            off = jnp.where(weight > 0.0, measured - shown, 0.0) - by_start @ (prior - begin)
+            own = (weight[:, None] * by_start) @ spread @ (weight[:, None] * by_start).T + jnp.eye(weight.size)
+            surprise = 0.5 * ((weight * off) @ jnp.linalg.solve(own, weight * off) + jnp.linalg.slogdet(own)[1])
+            return prior + gain @ (weighted @ off), gain, end, end_by_start, surprise
+
+        begin = seen(prior)[0]
+        found, gain, end, end_by_start, surprise = seen(begin)
+        after = end + end_by_start @ (found - begin)
+        sound = jnp.all(jnp.isfinite(after)) & jnp.all(jnp.isfinite(found))
+        after, found = jnp.where(sound, after, fresh), jnp.where(sound, found, fresh)
+        left = jnp.where(sound, end_by_start @ gain @ end_by_start.T, jnp.diag(at_first))
+        return (after, 0.5 * (left + left.T)), (found, jnp.where(sound, surprise, jnp.inf))
+
+    begun = jnp.zeros(n), jnp.zeros((n, n))
+    starts, surprises = scan_used(step, begun, (w.t0, w.starts.T, follows, local, w.force, w.measured, w.weight), w.used)
+    return starts.T, jnp.sum(surprises)
+
+
+def _open(problem: Problem, system: System) -> Array:
+    """Variance (n,) of a start of which nothing is known: the hidden side anywhere in its play, as fast as the seen one at
+    most."""
+    assert system.motor is not None
+    w, gear = problem.windows, system.motor.ratio
+    play = 0.0 if system.contact is None else getattr(system.contact, "backlash", 0.0)
+    used = jnp.any(w.weight > 0.0, axis=1)
+    speed = jnp.sum(jnp.where(used, w.starts[1] ** 2, 0.0)) / jnp.maximum(jnp.sum(used), 1)
+    own = jnp.stack([(0.5 * play) ** 2, 0.1 * speed])
+    hidden = own if "motor" in system.channels else gear**2 * own
+    seen = (0.1 * w.drop) ** -2
+    both = jnp.concatenate([hidden, seen[2:]]) if "motor" in system.channels else jnp.concatenate([seen[:2], hidden])
+    return jnp.zeros(len(system.state_names)).at[:4].set(both)

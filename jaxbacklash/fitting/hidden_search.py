@@ -1,0 +1,132 @@
+"""The way to the neighbourhood of a drive of which one side is not seen: by segments of its record.
+
+Where one side is hidden a search may end with a window whose hidden start lies beyond an edge that it should not have crossed.
+So a segment is fitted a few steps at a time, each time from hidden starts that the filter finds anew with the model found so far
+(`jaxbacklash.fitting.hidden_motion`); where that does not lead to the noise, with looser ties at first. A try that leaves more
+than noise is followed by one on another segment from where it came to, and by others from what the filter finds likeliest of
+many parameters drawn at random. `jaxbacklash.fitting.search` asks, and goes on with the whole record.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from ..parameters import values
+from ..shooting.information import freedom
+from ..shooting.levenberg import Levenberg, Minimum, minimise
+from ..shooting.problem import Problem, Unknowns
+from .continuation import tied, with_friction_width
+from .friction_homotopy import sliding_speeds
+from .hidden_motion import carried
+from .segment import segment
+from .settings import BETWEEN, BRISK, EXPLAINED, FINER, LONG, LOOSE, LOOSEST, ROUGHLY, TRIES, TURNS
+
+TIES = (FINER * LOOSEST, LOOSE)
+DRAWN, KEPT_BEST = (96, 32, 32, 32), 4
+"""How many parameters are drawn in each turn, and the best of them near to which the next are drawn."""
+ROAM = {"inertia": 1.6, "backlash": 10.0, "stiffness": 12.0, "damping": 5.0}
+NEARBY = {"inertia": 1.5, "backlash": 2.0, "stiffness": 3.0, "damping": 2.0}
+"""Factors by which parameters are drawn where nothing is known of the joint, and where something is."""
+
+
+def near_by(
+    problem: Problem,
+    guess: Unknowns,
+    free: Sequence[str],
+    rng: np.random.Generator,
+    progress: Callable[[str, float], None],
+    tries: int = TRIES,
+) -> tuple[Unknowns, int]:
+    """Unknowns of the whole record near the minimum, and the steps that led there.
+
+    Parameters
+    ----------
+    problem : of a drive with one encoder
+    guess : where to begin
+    free : names of the free parameters
+    rng : of other parameters to begin from
+    tries : how many beginnings at most
+    progress : told the stage in words and the share of the work done
+    """
+    best, least, steps, roams = guess.theta, np.inf, 0, "motor" not in problem.system.channels
+    for attempt in range(tries):
+        progress(f"looking for the side that is not seen, try {attempt + 1}", 0.05 + 0.4 * attempt / tries)
+        part, start = segment(problem, guess, attempt % 2) or (problem, guess)
+        # A motor that is not seen has no other start; else the second try begins where the first came to, the others elsewhere.
+        if attempt == 1 and not roams:
+            start = _carried_on(part, np.asarray(best))
+        elif attempt or roams:
+            start = _carried_on(part, likeliest(part, free, rng, ROAM if roams else NEARBY))
+        ended, taken = _tightened(part, start)
+        steps += taken
+        left = _left(ended, part)
+        if left < least:
+            best, least = ended.value.theta, left
+        if left < EXPLAINED:
+            break
+    return _carried_on(problem, np.asarray(best)), steps
+
+
+def likeliest(part: Problem, free: Sequence[str], rng: np.random.Generator, reach: Mapping[str, float]) -> np.ndarray:
+    """Parameters (q,) in units of their scale, the likeliest to the filter of many, drawn wide at first, then nearer.
+
+    ``reach`` gives by name the factor by which a parameter may be larger or smaller than it is. What is known of a drive before
+    anything else is its inertia as a whole, seen from the link; only the link's share of it is drawn.
+    """
+    known = dict(zip(values(part.system), map(float, part.base)))
+    ratio = known["ratio"]
+    whole = known["inertia"] + ratio**2 * known["motor_inertia"]
+    width = np.array([np.log(reach.get(name, 1.0)) for name in free])
+
+    def drawn(middle: np.ndarray, spread: np.ndarray) -> np.ndarray:
+        theta = np.exp(middle + spread * rng.uniform(-1.0, 1.0, spread.size))
+        if {"inertia", "motor_inertia"} <= set(free):
+            at, other = free.index("inertia"), free.index("motor_inertia")
+            link = np.clip(theta[at] * known["inertia"], 0.1 * whole, 0.9 * whole)
+            theta[at], theta[other] = link / known["inertia"], (whole - link) / ratio**2 / known["motor_inertia"]
+        return theta
+
+    tried: list[tuple[float, np.ndarray]] = []
+    for turn, count in enumerate(DRAWN):
+        middles = [np.log(theta) for _, theta in tried[:KEPT_BEST]] or [np.zeros(width.size)]
+        factors = [drawn(middles[i % len(middles)], width * 0.4**turn) for i in range(count)]
+        tried += [(float(carried(part, factor - 1.0)[1]), factor) for factor in factors]
+        tried = sorted(((np.nan_to_num(c, nan=np.inf), f) for c, f in tried), key=lambda one: one[0])
+    return tried[0][1] - 1.0
+
+
+def _tightened(part: Problem, start: Unknowns) -> tuple[Minimum, int]:
+    """Where a segment's fit comes to, and its steps: a few at a time, each from hidden starts found anew; else with ties that
+    are looser at first."""
+    speeds, steps, best = sliding_speeds(part), 0, np.inf
+    for _ in range(TURNS):
+        ended = minimise(with_friction_width(tied(part, BRISK), speeds, start), start, Levenberg(limit=BETWEEN, atol=ROUGHLY))
+        steps += int(ended.stats["steps"])
+        left = _left(ended, part)
+        if left < EXPLAINED:
+            return ended, steps
+        if left >= best:
+            break
+        best, start = left, _carried_on(part, np.asarray(ended.value.theta))
+    for tie in TIES:
+        at = with_friction_width(tied(part, tie), speeds, start)
+        ended = minimise(at, start, Levenberg(limit=LONG, atol=ROUGHLY))
+        steps += int(ended.stats["steps"])
+        if _left(ended, part) > EXPLAINED:
+            other = minimise(at, _carried_on(part, np.asarray(ended.value.theta)), Levenberg(limit=LONG, atol=ROUGHLY))
+            steps += int(other.stats["steps"])
+            ended = min(ended, other, key=lambda m: float(np.nan_to_num(m.stats["cost"], nan=np.inf)))
+        start = ended.value
+    return ended, steps
+
+
+def _carried_on(problem: Problem, theta: np.ndarray) -> Unknowns:
+    return Unknowns(theta, np.asarray(carried(problem, theta)[0]), np.asarray(problem.windows.coefficients))
+
+
+def _left(ended: Minimum, part: Problem) -> float:
+    """Reduced chi-square of what a fit leaves."""
+    found = 2.0 * float(ended.stats["cost"]) / max(freedom(part, tied=True), 1.0)
+    return found if np.isfinite(found) else np.inf
