@@ -76,6 +76,9 @@ def files(folder: Path) -> None:
     for name, source in (("run1", "demo_train"), ("run2", "demo_heldout"), ("sweep1", "demo_train")):
         shutil.copy(data / f"{source}.csv", folder / f"{name}.csv")
     shutil.copy(data / "own_effect.py", folder)
+    (folder / "runs").mkdir()
+    for name in ("run1", "run2"):
+        shutil.copy(folder / f"{name}.csv", folder / "runs")
     t, x, z = np.loadtxt(data / "demo_train.csv", delimiter=",", skiprows=1, unpack=True)
     step = PLAY / 4
     for name, head, rows in (("counts4", "t,x,z", [t, step * np.round(x / step), step * np.round(z / step)]),

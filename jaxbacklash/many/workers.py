@@ -127,7 +127,8 @@ def _started() -> subprocess.Popen[bytes]:
     setting: Any = jax.config
     brief = {f"--{name}={value}" for name, value in BRIEF.items()}
     flags = [word for word in os.environ.get("XLA_FLAGS", "").split() if word not in brief]
-    # Each core has a process of its own.
+    # Each core has a process of its own, whose operations have no need to wait for threads of others.
+    flags.append("--xla_cpu_multi_thread_eigen=false")
     environment = os.environ | {"XLA_FLAGS": " ".join(flags), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
     environment["PYTHONPATH"] = os.pathsep.join(path for path in sys.path if path)
     process = subprocess.Popen([sys.executable, "-c", BEGIN], stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
