@@ -39,7 +39,7 @@ DURATION, RATE, SIGMA, INERTIA = 5.0, 200.0, 3e-5, 2.9
 PLAY, STIFFNESS, DAMPING = 0.0245, 11800.0, 10.5
 BROKEN = 100
 """One record in so many is broken."""
-FINE = 100
+FINE = 20
 """Steps of the generator between two samples."""
 
 
@@ -205,7 +205,7 @@ def main() -> None:
     parser.add_argument("--tiny", action="store_true", help="few records")
     parser.add_argument("--records", type=int, default=10_000, help="how many there are")
     given = parser.parse_args()
-    count, part, alone, rounds = (40, 24, 4, 1) if given.tiny else (given.records, 400, 40, 3)
+    count, part, alone, rounds = (40, 24, 4, 1) if given.tiny else (given.records, 400, 30, 3)
     jb.start()
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "records"

@@ -132,6 +132,7 @@ def test_an_unforeseen_error_is_a_row_too():
     assert "no way" in each.rows[0]["why"]
     with pytest.raises(jb.BadInput, match="found none"):
         jb.fit_each([])
+    assert jb.refine_each(["nowhere.csv"], workers=0, seed=0).rows[0]["why"].startswith("nowhere.csv: found no such file")
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,9 @@ Item = tuple[int, Source]
 def rows_of(wanted: Wanted, items: Sequence[Item]) -> Iterator[tuple[int, Row]]:
     """The rows of some records, each with its record's number."""
     with warnings_noted():
+        if wanted.command == "refine":  # each tries other models, whose programs would not be the same
+            yield from ((number, row_of(wanted, source)) for number, source in items)
+            return
         yield from in_lockstep([(number, partial(row_of, wanted, source)) for number, source in items])
 
 

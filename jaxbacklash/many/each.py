@@ -92,6 +92,7 @@ def refine_each(
     system: System | None = None,
     heldout: Record | None = None,
     window: float | None = None,
+    seed: int = 0,
     translational: bool = False,
     folder: str | os.PathLike[str] | None = None,
     workers: int | None = None,
@@ -111,7 +112,7 @@ def refine_each(
     >>> [row["effects"] for row in each.rows]  # doctest: +SKIP
     [['gravity'], ['gravity']]
     """
-    wanted = Wanted("refine", model, inertia, (), system, heldout, window, translational=translational, read=read, before=before)
+    wanted = Wanted("refine", model, inertia, (), system, heldout, window, 0, seed, translational, read, before)
     return _each(wanted, records, folder, workers, client, progress)
 
 
