@@ -40,3 +40,15 @@ def test_a_torque_against_what_is_missing_promises_nothing():
     right, wrong = (test.best([jb.Gravity(size)], [])[0] for size in (15.0, -15.0))
     assert right > 100.0
     assert wrong == 0.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["chirp", "multisine"])
+def test_no_shape_promises_more_than_is_left(kind):
+    """A parabola through two small shares may promise anything at thirty times them; there the answer is asked again."""
+    record, rig, _, _ = hidden("coulomb_joint", kind, 5, Tc=4.5)
+    own = fitter(record, rig.inertia)
+    alone = own.fit_model({})
+    test = ForceTest(own, alone)
+    for shape in jb.FlexibleLink.guesses(alone.system, own.weak_form.motion):
+        assert test.best([shape], [])[0] < alone.rest

@@ -48,8 +48,13 @@ class ForceTest:
         is; the strength of a law that comes ``instead`` of others of the model is left as it is. ``begun`` (K, S) as in
         `own_torques`."""
         less = sum((own_torques([law], self.system, self.along)[0] for law in instead), np.zeros(self.along.t.size))
-        found = [self.fall(torque - less) for torque in own_torques(shapes, self.system, self.along, begun)]
+        torques = [torque - less for torque in own_torques(shapes, self.system, self.along, begun)]
+        found = [self.fall(torque) for torque in torques]
         best = max(range(len(shapes)), key=lambda k: found[k][0])
+        while found[best][0] > 0.0 and not self._answer(self._at_edges(torques[best]), found[best][1]) < 0.0:
+            # Far beyond the shares that were tried the cost is no parabola any more.
+            found[best] = 0.0, 1.0
+            best = max(range(len(shapes)), key=lambda k: found[k][0])
         gain, size = found[best]
         return gain, shapes[best].scaled(size) if gain > 0.0 and not instead else shapes[best], best
 
@@ -65,8 +70,10 @@ class ForceTest:
 
     def fall(self, torque: np.ndarray) -> tuple[float, float]:
         """What a torque (N,) [N m] along the motion brings at its best size, and that size; nothing where it is below zero."""
-        torque = np.interp(self.edges, self.along.t, torque)
-        return self._lowest(partial(self._answer, torque))
+        return self._lowest(partial(self._answer, self._at_edges(torque)))
+
+    def _at_edges(self, torque: np.ndarray) -> np.ndarray:
+        return np.interp(self.edges, self.along.t, torque)
 
     def _lowest(self, rise: Callable[[float], float]) -> tuple[float, float]:
         once = rise(PUSH)
