@@ -5,8 +5,8 @@ import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.fitting.fit import prepare
-from jaxbacklash.fitting.hidden_motion import carried, one_side
 from jaxbacklash.fitting.setup import free_names, make_problem
+from jaxbacklash.one_encoder.carried import carried, one_side
 from jaxbacklash.regression.hidden_side import search_hidden
 from tests.independent.drives import DriveRig, random_rig, servo_record
 

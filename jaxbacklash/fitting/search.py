@@ -15,6 +15,8 @@ import equinox as eqx
 import numpy as np
 
 from ..errors import NoAnswer
+from ..one_encoder.carried import one_side
+from ..one_encoder.near_by import Means, near_by
 from ..shooting.information import freedom, inverse_information
 from ..shooting.levenberg import Levenberg, Minimum, minimise
 from ..shooting.problem import Problem, Unknowns
@@ -22,11 +24,9 @@ from ..shooting.windows import Windows
 from ..system import System
 from .continuation import Continued, Stop, continued, in_one_run, log_evidence, sharpened, tied, with_friction_width
 from .friction_homotopy import sliding_speeds
-from .hidden_motion import one_side
-from .hidden_search import near_by
 from .left_out import misfit, most_of_noise
 from .segment import determines, segment, variance_ratio
-from .settings import BETWEEN, CLOSELY, FINER, JOINED, LAST, LIKELY, LOOSE, LOOSEST, ROUGHLY, TIGHTEST, WITHIN_CHANCE
+from .settings import BETWEEN, CLOSELY, EXPLAINED, FINER, JOINED, LAST, LIKELY, LOOSE, LOOSEST, ROUGHLY, TIGHTEST, WITHIN_CHANCE
 from .setup import first_guess, make_problem
 from .stick_slip import search_stick_slip, sticks_and_slips
 
@@ -222,14 +222,19 @@ def _elsewhere(problem: Problem, rng: np.random.Generator) -> np.ndarray:
 
 def _one_side(problem: Problem, guess: Unknowns, free: Sequence[str], seed: int, progress: Callable[[str, float], None]) -> Found:
     """`search` for a drive of which motor or link is not seen: segments first, then the whole record from near its minimum."""
-    begin, steps = near_by(problem, guess, free, np.random.default_rng(seed), progress)
+    means = Means(segment, _roughly, EXPLAINED)
+    begin, steps = near_by(problem, guess, free, np.random.default_rng(seed), progress, means)
     progress("fitting, the whole record", 0.55)
-    speeds = sliding_speeds(problem)
-    loose = minimise(with_friction_width(tied(problem, LOOSE), speeds, begin), begin, Levenberg(limit=LAST, atol=ROUGHLY))
+    loose = _roughly(problem, LOOSE, begin, LAST)
     found = _one_trajectory(problem, loose.value) or _continued(problem, loose.value, first=LOOSE / FINER)
     if not np.isfinite(found.log_evidence):
         raise NoAnswer(NOWHERE)
     return Found(found, 1, 1, steps + int(loose.stats["steps"]) + _steps(found))
+
+
+def _roughly(problem: Problem, tie: float, begin: Unknowns, limit: int) -> Minimum:
+    at = with_friction_width(tied(problem, tie), sliding_speeds(problem), begin)
+    return minimise(at, begin, Levenberg(limit=limit, atol=ROUGHLY))
 
 
 def _stick_slip(problem: Problem, starts: int, seed: int, progress: Callable[[str, float], None]) -> Found:

@@ -70,11 +70,6 @@ NEAR_ENOUGH = 2.5
 
 # ---- the start of a fit
 
-BRISK, TURNS = 3e-3, 3
-"""Weight of the ties with which a drive whose link or motor is not seen is brought near, and how often from starts found anew: of
-the weights from 1e-3 to 1e-2 that with which most of twelve random rigs came to the noise in two turns."""
-TRIES, LONG = 5, 60
-"""Beginnings of such a search at most; and steps of each fit at most where the turns did not lead to the noise."""
 WINDOWS, TIMES = 128, 3
 """Windows of the segment on which starting points are compared; a record must be so many times longer, else it is taken whole."""
 WELL_KNOWN, MOST_UNCERTAIN = 0.1, 0.5

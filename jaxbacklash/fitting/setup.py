@@ -14,6 +14,7 @@ from ..compiled import kept_jit
 from ..effects import Contact, Damper, Motor, Spring
 from ..errors import BadInput
 from ..mechanics import AbstractEffect, Drive, canonical_name, catalogue, motion_of
+from ..one_encoder.carried import carried, one_side
 from ..parameters import free_specs, ravel, specs, values, with_values
 from ..records import Record
 from ..regression.along_motion import Motion, own_states
@@ -23,7 +24,6 @@ from ..regression.force_loop import read_loop
 from ..shooting.problem import Problem, Unknowns
 from ..shooting.windows import Windows
 from ..system import System, observe
-from .hidden_motion import carried, one_side
 from .settings import NEWTON, PERIOD, ROUNDING, UNLIKE_A_LOOP
 from .stick_slip import march, place, sticks_and_slips
 

@@ -7,7 +7,7 @@ With an encoder on the motor alone its motion behind the gear, :math:`x = \theta
 
 tells J by how large the joint's torque T has to be. Many such links, lanes of one program, run through a part of the record at
 once; those that leave least of the balance say where the next ones are tried (`jaxbacklash.regression.drive_start` asks). With an
-encoder on the link alone the balance of the whole tells the inertia in all; `jaxbacklash.fitting.hidden_search` looks for the
+encoder on the link alone the balance of the whole tells the inertia in all; `jaxbacklash.one_encoder.near_by` looks for the
 rest.
 
 Source: Golub and Pereyra, SIAM J. Numer. Anal. 10 (1973) 413, on leaving to least squares what is linear.

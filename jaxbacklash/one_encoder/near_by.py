@@ -2,7 +2,7 @@
 
 Where one side is hidden a search may end with a window whose hidden start lies beyond an edge that it should not have crossed.
 So a segment is fitted a few steps at a time, each time from hidden starts that the filter finds anew with the model found so far
-(`jaxbacklash.fitting.hidden_motion`); where that does not lead to the noise, with looser ties at first. A try that leaves more
+(`carried`); where that does not lead to the noise, with looser ties at first. A try that leaves more
 than noise is followed by one on another segment from where it came to, and by others from what the filter finds likeliest of
 many parameters drawn at random. `jaxbacklash.fitting.search` asks, and goes on with the whole record.
 """
@@ -10,25 +10,38 @@ many parameters drawn at random. `jaxbacklash.fitting.search` asks, and goes on 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..parameters import values
 from ..shooting.information import freedom
-from ..shooting.levenberg import Levenberg, Minimum, minimise
+from ..shooting.levenberg import Minimum
 from ..shooting.problem import Problem, Unknowns
-from .continuation import tied, with_friction_width
-from .friction_homotopy import sliding_speeds
-from .hidden_motion import carried
-from .segment import segment
-from .settings import BETWEEN, BRISK, EXPLAINED, FINER, LONG, LOOSE, LOOSEST, ROUGHLY, TRIES, TURNS
+from .carried import carried
 
-TIES = (FINER * LOOSEST, LOOSE)
+BRISK, TURNS, FEW = 3e-3, 3, 15
+"""Weight of the ties with which a segment is brought near, how often from starts found anew, and the steps of each: of the
+weights from 1e-3 to 1e-2 that with which most of twelve random rigs came to the noise in two turns."""
+TIES, MANY = (1e-3, 1e-2), 60
+"""Weights of the ties where that did not lead to the noise, and the steps of each fit."""
+TRIES = 5
+"""Beginnings at most."""
 DRAWN, KEPT_BEST = (96, 32, 32, 32), 4
 """How many parameters are drawn in each turn, and the best of them near to which the next are drawn."""
 ROAM = {"inertia": 1.6, "backlash": 10.0, "stiffness": 12.0, "damping": 5.0}
 NEARBY = {"inertia": 1.5, "backlash": 2.0, "stiffness": 3.0, "damping": 2.0}
 """Factors by which parameters are drawn where nothing is known of the joint, and where something is."""
+
+
+@dataclass(frozen=True)
+class Means:
+    """What the search works with: ``segment`` cuts the best or next best part out of a problem with its first guess; ``fitted``
+    fits one with ties of a weight from unknowns in at most so many steps; ``enough`` is the reduced chi-square near the noise."""
+
+    segment: Callable[[Problem, Unknowns, int], tuple[Problem, Unknowns] | None]
+    fitted: Callable[[Problem, float, Unknowns, int], Minimum]
+    enough: float
 
 
 def near_by(
@@ -37,6 +50,7 @@ def near_by(
     free: Sequence[str],
     rng: np.random.Generator,
     progress: Callable[[str, float], None],
+    means: Means,
     tries: int = TRIES,
 ) -> tuple[Unknowns, int]:
     """Unknowns of the whole record near the minimum, and the steps that led there.
@@ -47,24 +61,25 @@ def near_by(
     guess : where to begin
     free : names of the free parameters
     rng : of other parameters to begin from
-    tries : how many beginnings at most
     progress : told the stage in words and the share of the work done
+    means : how a part is cut out and fitted
+    tries : how many beginnings at most
     """
     best, least, steps, roams = guess.theta, np.inf, 0, "motor" not in problem.system.channels
     for attempt in range(tries):
         progress(f"looking for the side that is not seen, try {attempt + 1}", 0.05 + 0.4 * attempt / tries)
-        part, start = segment(problem, guess, attempt % 2) or (problem, guess)
+        part, start = means.segment(problem, guess, attempt % 2) or (problem, guess)
         # A motor that is not seen has no other start; else the second try begins where the first came to, the others elsewhere.
         if attempt == 1 and not roams:
             start = _carried_on(part, np.asarray(best))
         elif attempt or roams:
             start = _carried_on(part, likeliest(part, free, rng, ROAM if roams else NEARBY))
-        ended, taken = _tightened(part, start)
+        ended, taken = _tightened(part, start, means)
         steps += taken
         left = _left(ended, part)
         if left < least:
             best, least = ended.value.theta, left
-        if left < EXPLAINED:
+        if left < means.enough:
             break
     return _carried_on(problem, np.asarray(best)), steps
 
@@ -97,25 +112,24 @@ def likeliest(part: Problem, free: Sequence[str], rng: np.random.Generator, reac
     return tried[0][1] - 1.0
 
 
-def _tightened(part: Problem, start: Unknowns) -> tuple[Minimum, int]:
+def _tightened(part: Problem, start: Unknowns, means: Means) -> tuple[Minimum, int]:
     """Where a segment's fit comes to, and its steps: a few at a time, each from hidden starts found anew; else with ties that
     are looser at first."""
-    speeds, steps, best = sliding_speeds(part), 0, np.inf
+    steps, best = 0, np.inf
     for _ in range(TURNS):
-        ended = minimise(with_friction_width(tied(part, BRISK), speeds, start), start, Levenberg(limit=BETWEEN, atol=ROUGHLY))
+        ended = means.fitted(part, BRISK, start, FEW)
         steps += int(ended.stats["steps"])
         left = _left(ended, part)
-        if left < EXPLAINED:
+        if left < means.enough:
             return ended, steps
         if left >= best:
             break
         best, start = left, _carried_on(part, np.asarray(ended.value.theta))
     for tie in TIES:
-        at = with_friction_width(tied(part, tie), speeds, start)
-        ended = minimise(at, start, Levenberg(limit=LONG, atol=ROUGHLY))
+        ended = means.fitted(part, tie, start, MANY)
         steps += int(ended.stats["steps"])
-        if _left(ended, part) > EXPLAINED:
-            other = minimise(at, _carried_on(part, np.asarray(ended.value.theta)), Levenberg(limit=LONG, atol=ROUGHLY))
+        if _left(ended, part) > means.enough:
+            other = means.fitted(part, tie, _carried_on(part, np.asarray(ended.value.theta)), MANY)
             steps += int(other.stats["steps"])
             ended = min(ended, other, key=lambda m: float(np.nan_to_num(m.stats["cost"], nan=np.inf)))
         start = ended.value

@@ -1,0 +1,8 @@
+"""Drives with one encoder alone: where the side that is not seen is, and the way to the neighbourhood of the parameters.
+
+Between `jaxbacklash.shooting`, on whose problem it works, and `jaxbacklash.fitting`, which begins from what it finds.
+"""
+
+from .carried import carried as carried
+from .carried import one_side as one_side
+from .near_by import near_by as near_by
