@@ -22,6 +22,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -125,7 +126,7 @@ def against_others(paths: list[Path], part: int, alone: int, rounds: int) -> Non
         jb.fit(read(path), inertia=INERTIA)
     jb.fit_each(sound[: 2 * cores()], inertia=INERTIA, read=read)
     spent: dict[str, list[float]] = {"fit_each": [], "loop of fit": [], "scipy + numba": []}
-    with ProcessPoolExecutor(cores()) as pool:
+    with ProcessPoolExecutor(cores(), mp_context=get_context("spawn")) as pool:
         list(pool.map(peer, range(4)))
         for _ in range(rounds):
             spent["fit_each"].append(timed(lambda: jb.fit_each(sound, inertia=INERTIA, read=read)) / len(sound))

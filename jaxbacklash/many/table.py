@@ -132,8 +132,13 @@ class Each(Shown):
 
     def _failures(self) -> list[str]:
         failed = [(k, row) for k, row in enumerate(self.rows, 1) if row["verdict"] == FAILED]
-        lines = [f"  record {k}, {row['record'] or 'without a name'}: {row['why']}" for k, row in failed[:NAMED]]
+        lines = [f"  record {k}: {_with_name(row)}" for k, row in failed[:NAMED]]
         return lines + ([f"  and {len(failed) - NAMED} more without a result, see the table"] if len(failed) > NAMED else [])
+
+
+def _with_name(row: Row) -> str:
+    """Why a record has no result, with its name, which most sentences begin with."""
+    return str(row["why"]) if str(row["why"]).startswith(str(row["record"])) else f"{row['record'] or 'no name'}: {row['why']}"
 
 
 def _cell(value: Any) -> Any:
