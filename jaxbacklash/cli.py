@@ -6,10 +6,7 @@
 
 from __future__ import annotations
 
-import atexit
 import functools
-import gc
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -20,6 +17,7 @@ from .commands.options import (
     EFFECTS,
     Cluster,
     Each,
+    Excitation,
     Heldout,
     Inertia,
     Json,
@@ -28,8 +26,10 @@ from .commands.options import (
     NoSeed,
     Out,
     Seed,
+    SlowRecord,
     Translation,
     Window,
+    WindUp,
     Workers,
     one_record,
     only_with_each,
@@ -242,17 +242,8 @@ def skeleton(
 )
 @reads
 def lost_motion(
-    record: Annotated[
-        Path,
-        typer.Argument(
-            callback=there,
-            help="A slow record: t with x and z, y or link (two positions), F and z (pulled, F of -1, 0, 1), or T and z (a loop)",
-        ),
-    ],
-    wind_up: Annotated[
-        float | None,
-        typer.Option("--wind-up", help="Elastic wind-up in the lost motion, both ways together [rad; m], where known"),
-    ] = None,
+    record: SlowRecord,
+    wind_up: WindUp = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder for result.json and report.html")] = None,
     json: Json = False,
     reading: Reading = AS_IT_IS,
@@ -293,15 +284,7 @@ def chaos(
 def simulate(
     model: Annotated[Path, typer.Argument(help="A model file (TOML)")],
     out: Annotated[Path, typer.Option("--out", help="Record to write: .csv, .npz or .mat")],
-    excitation: Annotated[
-        str,
-        typer.Option(
-            "--excitation",
-            help="harmonic:amplitude=,frequency= | chirp:amplitude=,f0=,f1= | multisine:amplitude=,low=,high=,lines= | "
-            "stepped:amplitude=,low=,high=,steps= | rest | FILE of a record whose x or F is used; amplitudes in rad, "
-            "or in N m with --force",
-        ),
-    ] = "chirp:amplitude=0.07,f0=0,f1=12",
+    excitation: Excitation = "chirp:amplitude=0.07,f0=0,f1=12",
     laws: Laws = None,
     force: Annotated[bool, typer.Option("--force", help="The excitation is a force or torque on the link")] = False,
     duration: Annotated[float, typer.Option("--duration", help="Length [s]")] = 30.0,
@@ -396,30 +379,9 @@ def check(json: Json = False) -> None:
 
 def main() -> None:
     """Run the command line; every error ends in one sentence and an exit code, see `commands.outcome`."""
-    from .commands.outcome import fill_closed_streams, let_go_of_output, say, tell_plainly, told
-    from .stopping import end_when_told
+    from .commands.ending import run
 
-    fill_closed_streams()
-    end_when_told()
-    tell_plainly()
-    for stream in (sys.stdout, sys.stderr):  # names of files may hold what the terminal's letters cannot show
-        if hasattr(stream, "reconfigure"):
-            stream.reconfigure(errors="backslashreplace")
-    # Much is loaded, most of it stays, and a command ends soon: looking through all of it for garbage is a fifth of the time.
-    gc.set_threshold(100_000, 50, 100)
-    atexit.register(gc.freeze)  # nor once more when all of it goes anyway, which took longer than a fit
-    try:
-        code = app(standalone_mode=False)  # the exit code where the parser ended the command, after --help
-        if sys.stdout is not None:  # it was closed before the command began
-            sys.stdout.flush()
-    except BaseException as error:
-        if len(sys.argv) < 2 and hasattr(error, "format_message"):  # without any word the parser answers with the help
-            print(error.format_message(), file=sys.stderr)
-            sys.exit(2)
-        code = say(*told(error))
-        if isinstance(error, OSError | SystemExit):
-            let_go_of_output()
-    sys.exit(code if isinstance(code, int) else 0)
+    run(app)
 
 
 if __name__ == "__main__":

@@ -81,3 +81,23 @@ Cluster = Annotated[
     str | None, typer.Option("--cluster", help="With --each: address of a dask scheduler whose workers do it, as tcp://host:8786")
 ]
 Workers = Annotated[int | None, typer.Option("--workers", help="With --each: processes of this machine; default one a core")]
+SlowRecord = Annotated[
+    Path,
+    typer.Argument(
+        callback=there,
+        help="A slow record: t with x and z, y or link (two positions), F and z (pulled, F of -1, 0, 1), or T and z (a loop)",
+    ),
+]
+WindUp = Annotated[
+    float | None,
+    typer.Option("--wind-up", help="Elastic wind-up in the lost motion, both ways together [rad; m], where known"),
+]
+Excitation = Annotated[
+    str,
+    typer.Option(
+        "--excitation",
+        help="harmonic:amplitude=,frequency= | chirp:amplitude=,f0=,f1= | multisine:amplitude=,low=,high=,lines= | "
+        "stepped:amplitude=,low=,high=,steps= | rest | FILE of a record whose x or F is used; amplitudes in rad, "
+        "or in N m with --force",
+    ),
+]
