@@ -35,6 +35,7 @@ from .excitation import Multisine as Multisine
 from .excitation import Rest as Rest
 from .excitation import Sampled as Sampled
 from .excitation import SteppedSine as SteppedSine
+from .export import exported as exported
 from .fitting import Comparison as Comparison
 from .fitting import Estimate as Estimate
 from .fitting import Fit as Fit

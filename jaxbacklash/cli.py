@@ -306,6 +306,19 @@ def simulate(
     )  # fmt: skip
 
 
+@app.command(cls=Checked, epilog="Example: jaxbacklash export fit1/model.toml --to mjcf --out joint.xml")
+def export(
+    model: Annotated[Path, typer.Argument(help="A model file (TOML)")],
+    to: Annotated[str, typer.Option("--to", help="mjcf (MuJoCo) or modelica")],
+    out: Annotated[Path | None, typer.Option("--out", help="File to write; default the standard output")] = None,
+    json: Json = False,
+) -> None:
+    """Hand a fitted model on to another simulator, or say what that one cannot carry."""
+    from .commands import export as command
+
+    command.run(model, to=to, out=out, as_json=json)
+
+
 @computes("map", epilog="Example: jaxbacklash map --inverse-alpha 1:5:256 --zeta 0.005:0.03:64 --out case1.nc")
 def map_(
     case: Annotated[int, typer.Option("--case", help="The paper's CASE 1 or 2, in dimensionless form")] = 1,
