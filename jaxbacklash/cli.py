@@ -374,12 +374,15 @@ def studio(
 @computes(epilog="Example: jaxbacklash demo --out demo")
 def demo(
     out: Annotated[Path, typer.Option("--out", help="Folder for what the demo makes")] = Path("jaxbacklash-demo"),
+    drive: Annotated[
+        bool, typer.Option("--drive", help="A motor behind a gear instead: the play from the motor's encoder alone")
+    ] = False,
     json: Json = False,
 ) -> None:
     """Find what is hidden in the record that ships with the package: fit, see where it fails, add it, watch the error fall."""
     from .commands import demo as command
 
-    command.run(out=out, as_json=json)
+    (command.run_drive if drive else command.run)(out=out, as_json=json)
 
 
 @computes(epilog="Example: jaxbacklash check")

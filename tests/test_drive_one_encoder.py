@@ -1,5 +1,7 @@
 """Drives with an encoder on the motor alone, or on the link alone: the other side is found by what it does through the joint."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from jaxbacklash.fitting.fit import prepare
 from jaxbacklash.fitting.setup import free_names, make_problem
 from jaxbacklash.one_encoder.carried import carried, one_side
 from jaxbacklash.regression.hidden_side import search_hidden
+from tests.in_process import call
 from tests.independent.drives import DriveRig, random_rig, servo_record
 
 pytest.importorskip("numba", reason="the other program needs numba")
@@ -85,3 +88,13 @@ def test_the_filter_finds_the_side_that_is_not_seen(which):
     assert np.sqrt(np.mean(hidden[20:] ** 2)) < 0.1 * rig.backlash
     # A link that goes with its motor would be off by much of it.
     assert np.sqrt(np.mean((link - motor) ** 2)) > 0.3 * rig.backlash
+
+
+@pytest.mark.slow
+def test_the_demo_of_a_drive_finds_its_play(tmp_path):
+    told = call(["demo", "--drive", "--out", "found", "--json"], tmp_path)
+    assert told.code == 0, told.err
+    play = json.loads(told.out)["parameters"]["backlash"]
+    assert play["ci95"][0] < 0.012 < play["ci95"][1]
+    assert play["stderr"] < 1e-5
+    assert (tmp_path / "found" / "report.html").exists()
