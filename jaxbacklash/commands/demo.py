@@ -26,8 +26,9 @@ def shipped() -> tuple[Record, Record, float]:
     return *demo_records(), float(json.loads(told.read_text(encoding="utf-8"))["told"]["inertia"])
 
 
-RIG = {"motor_inertia": 6e-5, "motor_damping": 1.5e-4, "ratio": 50.0, "inertia": 0.08, "backlash": 0.012, "stiffness": 1500.0,
-       "damping": 0.8}  # fmt: skip
+GEAR, PLAY = 50.0, 0.012
+"""Turns of the motor for a turn of the link, and play [rad], of the drive of the second demo."""
+RIG = drive(6e-5, 1.5e-4, GEAR, inertia=0.08, backlash=PLAY, stiffness=1500.0, damping=0.8)
 """The drive of the second demo: a geared axis with 0.7 degree of play [SI]."""
 SECONDS, RATE, BITS, NOISE = 12.0, 1000.0, 14, 0.002
 """Length [s] and rate [Hz] of its record, bits of the motor's encoder, noise of the torque as a share of its size."""
@@ -40,11 +41,11 @@ def driven(seed: int = 0) -> Record:
     hertz = np.arange(0.3, 12.0, 0.37)
     angle = 2.0 * np.pi * (np.outer(t, hertz) + rng.uniform(0.0, 1.0, hertz.size))
     torque = np.sin(angle) @ (0.012 * np.sqrt(hertz))
-    motion = simulate(drive(**RIG), HeldTorque(0.0, 1.0 / RATE, torque), duration=SECONDS, rate=RATE)
+    motion = simulate(RIG, HeldTorque(0.0, 1.0 / RATE, torque), duration=SECONDS, rate=RATE)
     count = 2.0 * np.pi / 2**BITS
     motor = np.round(np.asarray(motion.observed)[:, 0] / count) * count
     read = torque + NOISE * np.std(torque) * rng.standard_normal(t.size)
-    return Record(t, {"torque": read, "motor": motor}, "the demo's drive", ratio=RIG["ratio"])
+    return Record(t, {"torque": read, "motor": motor}, "the demo's drive", ratio=GEAR)
 
 
 def run_drive(*, out: Path, as_json: bool) -> None:
@@ -62,7 +63,7 @@ def run_drive(*, out: Path, as_json: bool) -> None:
     if not as_json:
         play = found.parameters["backlash"]
         told = "was not found" if play.value is None else f"was found as {play.value:.6f} +- {play.stderr:.1g} rad"
-        print(f"\nThe play that the record was made with is {RIG['backlash']} rad; from the motor alone it {told}.")
+        print(f"\nThe play that the record was made with is {PLAY} rad; from the motor alone it {told}.")
 
 
 def run(*, out: Path, as_json: bool) -> None:

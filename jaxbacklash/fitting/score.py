@@ -15,16 +15,21 @@ import numpy as np
 from ..compiled import kept_jit
 from ..frames import dataset
 from ..parameters import values, with_values
+from ..shooting.information import freedom
 from ..shooting.lengths import SCORE_WINDOW
-from ..shooting.levenberg import Levenberg, minimise
+from ..shooting.levenberg import Levenberg, Minimum, minimise
 from ..shooting.multiple_shooting import residuals
 from ..shooting.problem import Problem, Unknowns, changed
 from ..shooting.windows import Layout
 from ..showing import Shown
-from .continuation import tied
-from .settings import BETWEEN, CLEARLY, FURTHER, JOINED, LAST, LOOSE, NEAR
+from .continuation import tied, with_friction_width
+from .friction_homotopy import sliding_speeds
+from .hidden_motion import one_side
+from .settings import BETWEEN, CLEARLY, EXPLAINED, FURTHER, JOINED, LAST, LOOSE, NEAR
 from .setup import first_guess
 
+GROWING = tuple(LOOSE * 3.0**step for step in range(-2, 5))
+"""Weights of the ties of a score where one side of a drive is not seen, each begun where the last one ended."""
 kept_residuals = kept_jit(residuals)
 
 
@@ -158,9 +163,23 @@ def score(
     solution = minimise(still, begin, how)
     if float(solution.stats["promise"]) > FURTHER * float(solution.stats["cost"]):
         solution = minimise(still, minimise(tied(still, LOOSE), begin, how).value, how)
+    if one_side(problem.system):
+        solution = _on_the_right_side(still, begin, solution, how)
     found, predicted = solution.value, solution.stats["predicted"]
     scores = tuple(_summarise(still, found, predicted, layout, group, i) for i in range(len(layout.first)))
     return scores, Unknowns(unknowns.theta, found.starts, found.coefficients)
+
+
+def _on_the_right_side(still: Problem, begin: Unknowns, solution: Minimum, how: Levenberg) -> Minimum:
+    """The better of a solution and one with ties that grow step by step, dry friction ever harder: where one side is not seen, a
+    window may end on the wrong side of an edge, or of a moment at which friction holds."""
+    if 2.0 * float(solution.stats["cost"]) < EXPLAINED * freedom(still, tied=True):
+        return solution
+    speeds = sliding_speeds(still)
+    for tie in GROWING:
+        begin = minimise(with_friction_width(tied(still, tie), speeds, begin), begin, how).value
+    other = minimise(still, begin, how)
+    return min(solution, other, key=lambda m: float(np.nan_to_num(m.stats["cost"], nan=np.inf)))
 
 
 def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout, group: int, record: int) -> Score:
