@@ -25,6 +25,7 @@ from ..system import System
 from .chance import explains
 from .estimates import UNDETERMINED, Estimate, inflation, judge
 from .hard import contact_samples, harder, most_play, travel_in_contact
+from .hidden_motion import one_side
 from .left_over import predict, settle_noise, why_open
 from .profile import with_profiles
 from .result import Fit
@@ -143,6 +144,9 @@ def fit(
             found, layout, scored = settled.found, settled.layout, settled.scored
             problem, unknowns = found.problem, found.unknowns
             fitted = with_values(system, dict(zip(values(system), np.asarray(problem.parameters(unknowns.theta)))))
+    if one_side(system) and found.tied:
+        # A motion that the fit has found is one, whether a score from nothing finds it or not.
+        scored = min(scored, score(problem, unknowns, layout, group=group)[0], key=lambda told: told[0].rms)
     unknown_noise = tuple(why_open(*own) for own in zip(chosen, layout.noise, scored))
     known = (layout.noise[0] / alone[0], layout.noise[0])
     held = predict_record(fitted, heldout, window=window, free=names, known=known) if heldout is not None else None

@@ -28,7 +28,7 @@ from .hidden_motion import one_side
 from .settings import BETWEEN, CLEARLY, EXPLAINED, FURTHER, JOINED, LAST, LOOSE, NEAR
 from .setup import first_guess
 
-GROWING = tuple(LOOSE * 3.0**step for step in range(-2, 5))
+GROWING = tuple(LOOSE * 3.0**step for step in range(5))
 """Weights of the ties of a score where one side of a drive is not seen, each begun where the last one ended."""
 kept_residuals = kept_jit(residuals)
 
@@ -171,15 +171,18 @@ def score(
 
 
 def _on_the_right_side(still: Problem, begin: Unknowns, solution: Minimum, how: Levenberg) -> Minimum:
-    """The better of a solution and one with ties that grow step by step, dry friction ever harder: where one side is not seen, a
-    window may end on the wrong side of an edge, or of a moment at which friction holds."""
-    if 2.0 * float(solution.stats["cost"]) < EXPLAINED * freedom(still, tied=True):
-        return solution
-    speeds = sliding_speeds(still)
-    for tie in GROWING:
-        begin = minimise(with_friction_width(tied(still, tie), speeds, begin), begin, how).value
-    other = minimise(still, begin, how)
-    return min(solution, other, key=lambda m: float(np.nan_to_num(m.stats["cost"], nan=np.inf)))
+    """The best of a solution and two with ties that grow step by step, dry friction as it is or ever harder: where one side is
+    not seen, a window may end on the wrong side of an edge, or of a moment at which friction holds."""
+    slides = sliding_speeds(still)
+    for speeds in ({}, slides) if slides else ({},):
+        if 2.0 * float(solution.stats["cost"]) < EXPLAINED * freedom(still, tied=True):
+            break
+        at = begin
+        for tie in GROWING:
+            at = minimise(with_friction_width(tied(still, tie), speeds, at), at, how).value
+        other = minimise(still, at, how)
+        solution = min(solution, other, key=lambda m: float(np.nan_to_num(m.stats["cost"], nan=np.inf)))
+    return solution
 
 
 def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout, group: int, record: int) -> Score:
