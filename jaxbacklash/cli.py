@@ -45,8 +45,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-
-
 computes = functools.partial(app.command, cls=Computation)
 
 
@@ -309,14 +307,14 @@ def simulate(
 @app.command(cls=Checked, epilog="Example: jaxbacklash export fit1/model.toml --to mjcf --out joint.xml")
 def export(
     model: Annotated[Path, typer.Argument(help="A model file (TOML)")],
-    to: Annotated[str, typer.Option("--to", help="mjcf (MuJoCo) or modelica")],
-    out: Annotated[Path | None, typer.Option("--out", help="File to write; default the standard output")] = None,
+    to: Annotated[str, typer.Option(help="mjcf (MuJoCo) or modelica")],
+    out: Annotated[Path | None, typer.Option(help="File to write; default the standard output")] = None,
     json: Json = False,
 ) -> None:
     """Hand a fitted model on to another simulator, or say what that one cannot carry."""
-    from .commands import export as command
+    from .commands.export import run
 
-    command.run(model, to=to, out=out, as_json=json)
+    run(model, to=to, out=out, as_json=json)
 
 
 @computes("map", epilog="Example: jaxbacklash map --inverse-alpha 1:5:256 --zeta 0.005:0.03:64 --out case1.nc")
@@ -374,9 +372,7 @@ def studio(
 @computes(epilog="Example: jaxbacklash demo --out demo")
 def demo(
     out: Annotated[Path, typer.Option("--out", help="Folder for what the demo makes")] = Path("jaxbacklash-demo"),
-    drive: Annotated[
-        bool, typer.Option("--drive", help="A motor behind a gear instead: the play from the motor's encoder alone")
-    ] = False,
+    drive: Annotated[bool, typer.Option("--drive", help="A geared motor instead: the play from its own encoder alone")] = False,
     json: Json = False,
 ) -> None:
     """Find what is hidden in the record that ships with the package: fit, see where it fails, add it, watch the error fall."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import NoAnswer
 from ..mechanics import AbstractEffect
+from ..one_encoder import one_side
 from ..parameters import values, with_values
 from ..precision import require_double_precision
 from ..records import Record, oriented
@@ -25,7 +26,6 @@ from ..system import System
 from .chance import explains
 from .estimates import UNDETERMINED, Estimate, inflation, judge
 from .hard import contact_samples, harder, most_play, travel_in_contact
-from .hidden_motion import one_side
 from .left_over import predict, settle_noise, why_open
 from .profile import with_profiles
 from .result import Fit

@@ -14,6 +14,7 @@ import numpy as np
 
 from ..compiled import kept_jit
 from ..frames import dataset
+from ..one_encoder import one_side
 from ..parameters import values, with_values
 from ..shooting.information import freedom
 from ..shooting.lengths import SCORE_WINDOW
@@ -24,7 +25,6 @@ from ..shooting.windows import Layout
 from ..showing import Shown
 from .continuation import tied, with_friction_width
 from .friction_homotopy import sliding_speeds
-from .hidden_motion import one_side
 from .settings import BETWEEN, CLEARLY, EXPLAINED, FURTHER, JOINED, LAST, LOOSE, NEAR
 from .setup import first_guess
 
