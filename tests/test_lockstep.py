@@ -1,5 +1,7 @@
 """Work in lockstep: the same results as alone, whoever stands beside, and errors where they belong."""
 
+from pathlib import Path
+
 import jax
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ from jaxbacklash.compiled import kept_jit
 from jaxbacklash.lockstep import in_lockstep
 from jaxbacklash.many.chunk import rows_of
 from jaxbacklash.many.wanted import Wanted
+from jaxbacklash.once import once
 
 CALLS = []
 
@@ -62,6 +65,34 @@ def test_an_error_in_one_lane_is_raised_and_one_that_is_caught_stops_nothing(unk
     told = dict(in_lockstep([("a", catches), ("b", work(0))]))
     assert told["a"] is not None
     assert told["b"] == work(0)()
+
+
+class Sized:
+    """What is worked out once, and asks for a program on the way."""
+
+    def __init__(self, k):
+        self.k = k
+
+    @once
+    def sum(self):
+        return float(growth(np.arange(3.0) + self.k, np.asarray(2.0), 2)["sum"])
+
+
+def test_a_property_that_asks_for_a_program_holds_up_nobody(unkept):
+    """With functools.cached_property of Python 3.11 the second lane waits for a lock that the first has, for ever."""
+    own = [Sized(k) for k in range(3)]
+    together = dict(in_lockstep([(k, lambda one=one: one.sum) for k, one in enumerate(own)]))
+    assert [together[k] for k in range(3)] == pytest.approx([Sized(k).sum for k in range(3)])
+
+
+def test_no_property_of_a_fit_holds_a_lock_while_it_is_worked_out():
+    """What a fit may read on its way in lockstep: nothing below the layer that starts it is a cached_property."""
+    below = ("fitting", "shooting", "regression", "one_encoder", "causes", "residuals", "criticism", "solvers", "effects")
+    package = Path(jb.__file__).parent
+    held = [
+        path.name for name in below for path in (package / name).rglob("*.py") if "cached_property" in path.read_text("utf-8")
+    ]
+    assert held == []
 
 
 @pytest.mark.slow

@@ -23,6 +23,11 @@ def exported(system: System, target: str) -> str:
     system : a joint with play or a spring whose base is held, or a drive
     target : ``"mjcf"`` (MuJoCo) or ``"modelica"`` (Modelica Standard Library)
 
+    Returns
+    -------
+    str
+        XML of MuJoCo, or a Modelica model.
+
     Raises
     ------
     BadInput

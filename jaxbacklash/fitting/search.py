@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import equinox as eqx
 import numpy as np
 
 from ..errors import NoAnswer
+from ..once import once
 from ..one_encoder.carried import one_side
 from ..one_encoder.near_by import Means, near_by
 from ..shooting.information import freedom, inverse_information
@@ -67,7 +67,7 @@ class Found:
         """Whether the windows are one trajectory, and nothing is left out."""
         return self.fit.tie >= TIGHTEST
 
-    @cached_property
+    @once
     def misfit(self) -> float:
         """Root of the reduced chi-square of one trajectory, or of what would leave as much as the model leaves out."""
         return misfit(self.fit)

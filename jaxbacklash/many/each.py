@@ -108,8 +108,8 @@ def refine_each(
 
     Examples
     --------
-    >>> each = jb.refine_each(["run1.csv", "run2.csv"], inertia=3.16, folder="found")  # doctest: +SKIP
-    >>> [row["effects"] for row in each.rows]  # doctest: +SKIP
+    >>> each = jb.refine_each(jb.demo_records(), inertia=3.16, workers=1)
+    >>> [row["effects"] for row in each.rows]
     [['gravity'], ['gravity']]
     """
     wanted = Wanted("refine", model, inertia, (), system, heldout, window, 0, seed, translational, read, before)

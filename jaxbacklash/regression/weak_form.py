@@ -8,13 +8,13 @@ It is fast and never gets lost, but noise in the motion biases it: it proposes s
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 from scipy import linalg
 
 from ..mechanics import AbstractEffect, canonical_name
+from ..once import once
 from ..parameters import free_specs, ravel, specs
 from ..records import Record
 from ..signals.bump import HALF_WIDTH
@@ -44,7 +44,7 @@ class WeakForm(Averaged):
         self._kept: dict[str, Any] = {}
         self._last: tuple[System, tuple[str, ...], Any] | None = None
 
-    @cached_property
+    @once
     def quick(self) -> WeakForm:
         """The same under bumps `QUICKER` times as short, which let through what changes as much sooner."""
         return WeakForm(self.record, quicker=self)

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any, Generic, TypeVar, overload
+from typing import TypeVar
 
 import numpy as np
 
+from jaxbacklash.once import once
 from jaxbacklash.side_by_side import side_by_side
 
 from .local import EVERY, MEDIAN, RANKS, SHARE, SURPRISE_OF_NOISE, common_step, level, surprise, within
@@ -17,32 +18,7 @@ POSITIONS = ("x", "y", "z", "motor", "link")
 LONG = 200_000
 """Samples from which on a channel is worth a core of its own."""
 
-Value = TypeVar("Value")
 Found = TypeVar("Found")
-
-
-class once(Generic[Value]):
-    """A property that is worked out when it is first asked for.
-
-    As `functools.cached_property`, of which Python 3.11 works out one at a time, whatever it belongs to: channels are looked
-    through side by side.
-    """
-
-    def __init__(self, work: Callable[[Any], Value]):
-        self.work, self.__doc__ = work, work.__doc__
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self.name = name
-
-    @overload
-    def __get__(self, one: None, owner: type) -> once[Value]: ...
-    @overload
-    def __get__(self, one: object, owner: type) -> Value: ...
-    def __get__(self, one, owner):
-        if one is None:
-            return self
-        value = one.__dict__[self.name] = self.work(one)
-        return value
 
 
 class Channel:
