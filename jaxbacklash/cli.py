@@ -44,6 +44,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
+    epilog="Begin with: jaxbacklash look YOUR_FILE. Each command has --help, with an example.",
 )
 computes = functools.partial(app.command, cls=Computation)
 

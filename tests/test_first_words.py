@@ -4,7 +4,10 @@ import re
 import tomllib
 from pathlib import Path
 
+import typer.main
+
 import jaxbacklash as jb
+from jaxbacklash.cli import app
 from jaxbacklash.commands.options import EFFECTS
 from tests.in_process import call
 
@@ -21,6 +24,18 @@ def shipped() -> set[str]:
 def test_version_is_printed_and_nothing_else(tmp_path):
     told = call(["--version"], tmp_path)
     assert (told.code, told.out, told.err) == (0, f"jaxbacklash {jb.__version__}\n", "")
+
+
+def test_the_first_screen_is_whole_and_says_where_to_begin(tmp_path):
+    for words, code in (((), 2), (("--help",), 0)):
+        told = call(words, tmp_path)
+        assert told.code == code
+        screen = told.out + told.err
+        for name in typer.main.get_command(app).commands:
+            assert re.search(rf"^  {name} +[A-Z].*[a-z]$", screen, flags=re.MULTILINE), name
+        assert "Begin with: jaxbacklash look YOUR_FILE" in " ".join(screen.split())
+        assert not re.search(r"[a-z]\.\.\.", screen)
+        assert max(len(line) for line in screen.splitlines()) <= 80
 
 
 def test_help_names_every_effect_and_what_each_model_is(tmp_path):

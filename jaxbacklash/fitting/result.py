@@ -157,11 +157,11 @@ def text(fit: Fit, causes: Sequence[Named] = ()) -> str:
     note = doubt(fit)
     lines += [line(estimate, note) for estimate in fit.parameters.values()]
     lines += _correlations(fit)
-    how = "joined into one continuous motion" if fit.tied else "apart by what a torque left out does"
+    how = "join into one continuous motion" if fit.tied else "do not join, as where a torque is left out"
     if fit.tried:
-        lines.append(f"{fit.agreeing} of {fit.tried} starts reached this minimum; windows {how}; {fit.steps} steps")
+        lines.append(f"{fit.agreeing} of {fit.tried} starts reached this minimum, after {fit.steps} steps; the windows {how}")
     else:
-        lines.append(f"begun where the search stood; windows {how}; {fit.steps} steps from there")
+        lines.append(f"begun where the search stood, {fit.steps} steps from there; the windows {how}")
     lines.append(verdict_text(fit, causes))
     return "\n".join(lines)
 
