@@ -8,6 +8,7 @@ import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.fitting.counts import count_of, few_counts
+from jaxbacklash.fitting.wide_play import wide_play
 
 from .independent.generator import measure, simulate_truth
 from .independent.rigs import Rig, make_excitation
@@ -77,3 +78,13 @@ def test_fit_says_so():
 @pytest.mark.slow
 def test_refine_says_so():
     assert TOLD in jb.refine(measured(5e-3, noise=5e-4), inertia=RIG.inertia).verdict.text
+
+
+def test_a_play_that_was_read_in_degrees_is_told_of():
+    record = SimpleNamespace(channels={"x": None, "y": None})
+    one = SimpleNamespace(records=(record,), parameters={"backlash": SimpleNamespace(value=1.27)}, translational=False)
+    assert "72.8 degrees is wide for a loose joint" in wide_play(one)
+    assert "--unit x=deg,y=deg" in wide_play(one)
+    narrow, unknown = ({"backlash": SimpleNamespace(value=value)} for value in (0.1, None))
+    for changed in ({"parameters": narrow}, {"parameters": unknown}, {"parameters": {}}, {"translational": True}):
+        assert wide_play(SimpleNamespace(**{**vars(one), **changed})) == ""

@@ -4,11 +4,13 @@ import re
 import tomllib
 from pathlib import Path
 
+import pytest
 import typer.main
 
 import jaxbacklash as jb
 from jaxbacklash.cli import app
 from jaxbacklash.commands.options import EFFECTS
+from jaxbacklash.fitting.setup import add_effects
 from tests.in_process import call
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -36,6 +38,32 @@ def test_the_first_screen_is_whole_and_says_where_to_begin(tmp_path):
         assert "Begin with: jaxbacklash look YOUR_FILE" in " ".join(screen.split())
         assert not re.search(r"[a-z]\.\.\.", screen)
         assert max(len(line) for line in screen.splitlines()) <= 80
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["fit", "a.csv", "--inertia", "1,5"], "--inertia 1,5: wanted a number, with a point and not a comma"),
+        (["fit", "a.csv", "--starts=two"], "--starts two: wanted a whole number"),
+        (["fit"], "RECORDS is missing: One or more records"),
+        (["fit"], "Example: jaxbacklash fit run1.csv"),
+        (["simulate", "a.toml"], "--out is missing: Record to write"),
+        (["fti", "a.csv"], "Did you mean 'fit'?"),
+    ],
+)
+def test_a_wrong_word_is_answered_with_what_was_wanted(tmp_path, words, said):
+    (tmp_path / "a.csv").write_text("")
+    told = call(words, tmp_path)
+    assert told.code == 2
+    assert told.err.startswith("error: ")
+    assert said in told.err
+    assert len(told.err.splitlines()) == 1
+
+
+def test_a_misspelt_effect_is_answered_with_the_nearest(tmp_path):
+    system = jb.base_motion_joint(inertia=1.0, backlash=0.02, stiffness=1e4, damping=10.0)
+    with pytest.raises(jb.BadInput, match=r"gravty: no such effect \(did you mean gravity\?\), wanted some of"):
+        add_effects(system, ["gravty"])
 
 
 def test_help_names_every_effect_and_what_each_model_is(tmp_path):

@@ -8,6 +8,8 @@ import pytest
 
 from jaxbacklash.cli import app
 from jaxbacklash.commands.look import spark
+from jaxbacklash.errors import BadInput
+from jaxbacklash.records import read_record
 from jaxbacklash.records.description import describe
 from jaxbacklash.records.options import ReadOptions
 from jaxbacklash.records.roles import guess_roles
@@ -119,3 +121,30 @@ def test_counts_too_long_for_a_number_are_proposed_as_times(tmp_path):
     found = describe(path, ReadOptions())
     assert found.command.endswith("--columns t=moment")
     np.testing.assert_allclose(found.record.t, T, atol=1e-9)
+
+
+def test_a_word_among_numbers_is_named_and_its_column_is_still_the_base(tmp_path, capsys):
+    path = written(tmp_path / "run.csv", ["time_s", "base_rad", "joint_rad"], T, X, X + Z)
+    rows = path.read_text().splitlines()
+    rows[322] = rows[322].split(",")[0] + ",ERR," + rows[322].split(",")[2]
+    path.write_text("\n".join(rows) + "\n")
+    with pytest.raises(BadInput, match="x=base_rad,y=joint_rad"):
+        read_record(path)
+    found = describe(path, ReadOptions())
+    assert found.record is None
+    assert found.columns[1].role == "x"
+    assert found.columns[1].findings[0] == 'numbers, but "ERR" at row 322 (line 323)'
+    assert 'row 322 (line 323), column base_rad: found "ERR", wanted a number' in found.obstacle
+    assert "--columns t=time_s,x=base_rad,y=joint_rad" in found.command
+    assert found.command.startswith("jaxbacklash fit")
+
+
+def test_counts_of_a_turn_that_are_too_few_are_asked_for_and_no_degrees_on_top(tmp_path):
+    step = 2 * np.pi / 65536
+    path = written(tmp_path / "run.csv", ["t", "x", "z"], T, np.round(X / step), np.round(4 * Z / step))
+    found = describe(path, ReadOptions())
+    assert "--scale z=0.00153398" in found.command
+    assert "deg" not in found.command
+    assert found.record is None
+    assert "state the factor to radians (2 pi over the counts of a turn)" in found.obstacle
+    assert describe(path, ReadOptions(scales={"x": step, "z": step})).record is not None

@@ -1,5 +1,8 @@
 """`jb.plot`: every picture draws the numbers that it is given, on axes of the user's choice and in the user's look."""
 
+import re
+from pathlib import Path
+
 import matplotlib
 import numpy as np
 import pytest
@@ -283,3 +286,5 @@ def test_every_public_plot_takes_axes_and_says_what_comes_back():
         assert inspect.signature(draw).parameters["ax"].kind is inspect.Parameter.KEYWORD_ONLY, name
         assert "ax : " in draw.__doc__, name
         assert "Returns" in draw.__doc__, name
+    told = "".join(path.read_text(encoding="utf-8") for path in Path(__file__).parent.glob("test_*.py"))
+    assert not [name for name in plot.__all__ if not re.search(rf"\bplot\.{name}\b", told)], "no test of what it draws"

@@ -33,7 +33,9 @@ def told(error: BaseException) -> tuple[str, int]:
     if isinstance(error, BrokenPipeError) or (isinstance(error, SystemExit) and isinstance(error.__context__, BrokenPipeError)):
         return "", 1  # the parser ends the process by itself where its reader has gone
     if hasattr(error, "format_message"):  # a wrong word on the command line
-        return f"error: {' '.join(error.format_message().split())}", 2
+        from .wrong_words import refused
+
+        return f"error: {refused(error)}", 2
     if os.environ.get(DEBUG):
         traceback.print_exception(error)
     return _unforeseen(error), 1

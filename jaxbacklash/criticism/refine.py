@@ -21,6 +21,7 @@ from ..fitting.result import Fit
 from ..fitting.score import Score
 from ..fitting.search import silent
 from ..fitting.setup import base_system, free_names
+from ..fitting.wide_play import wide_play
 from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..records.force import tell_way
@@ -133,7 +134,8 @@ def refine(
     clock["score"] = time.perf_counter()
     others = tuple(sorted(search.level, key=lambda names: search.level[names].criterion))
     verdict = judge_rest(kept, [s.fit for s in stages], unnamed(fitter, kept))
-    verdict = replace(verdict, text=f"{verdict.text} {against} {few_counts(last)}".strip())
+    said = (verdict.text, against, few_counts(last), wide_play(last))
+    verdict = replace(verdict, text=" ".join(part for part in said if part))
     experiments = []
     for names in others[:2]:
         progress(f"looking for an experiment that separates {' + '.join(names)}", 0.88)

@@ -20,6 +20,7 @@ from .chance import beyond_chance, explains, near_noise
 from .counts import few_counts
 from .estimates import Estimate, line
 from .score import Score, error_in_words
+from .wide_play import wide_play
 
 WITHOUT_KT = "no --kt was given: inertias, stiffness, damping and torques are per N m/A of the motor"
 """What is said of a drive whose current stands for its torque."""
@@ -219,4 +220,4 @@ def verdict_text(fit: Fit, causes: Sequence[Named] = ()) -> str:
     missing = [e for e in fit.parameters.values() if e.value is None]
     if missing:
         sentence += " Not found: " + "; ".join(f"{e.label or e.name} ({e.why})" for e in missing) + "."
-    return f"{sentence} {few_counts(fit)}".rstrip()
+    return " ".join(part for part in (sentence, few_counts(fit), wide_play(fit)) if part)

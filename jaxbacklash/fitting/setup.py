@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
@@ -176,7 +177,9 @@ def add_effects(system: System, effects: Sequence[AbstractEffect | str]) -> Syst
             raise BadInput(f"--effects {name}: the model has this effect already; name it once, here or in the model file")
         if isinstance(effect, str):
             if effect not in known:
-                raise BadInput(f"--effects {effect}: no such effect, wanted some of {', '.join(known)}")
+                near = difflib.get_close_matches(effect, known, n=1)
+                meant = f" (did you mean {near[0]}?)" if near else ""
+                raise BadInput(f"--effects {effect}: no such effect{meant}, wanted some of {', '.join(known)}")
             effect = known[effect].guesses(system)[0]
         system = system.with_effects(effect)
     return system

@@ -31,7 +31,8 @@ def numbers_of(table: Table, column: Column, channel: str, where: str) -> np.nda
         if row is None:
             return column.values.astype(float)
         found = f'"{cell[:40]}"' if cell else "an empty cell"
-        raise wrong(f"{where} {table.place(row)}, column {column.name}", found, "a number")
+        wanted = "a number, or an empty cell where none was measured, which --resample bridges"
+        raise wrong(f"{where} {table.place(row)}, column {column.name}", found, wanted)
     return checks.real_vector(column.values, column.name or channel, where)
 
 

@@ -24,7 +24,7 @@ from .options import ReadOptions
 from .reader import record_of
 from .record import Record
 from .remedies import applied, with_remedy
-from .roles import columns_option, guess_roles, numeric
+from .roles import columns_option, guess_roles, holds_numbers, numbers_but_for_a_word, numeric
 from .table import Column, Table
 
 MOST_QUESTIONS = 8
@@ -122,7 +122,7 @@ def describe(path: Path, options: ReadOptions, *, typed: tuple[str, ...] = ()) -
                 break
             words = with_remedy(words, remedy)
     roles = _roles(table, options, where)
-    moving = [number for number, column in enumerate(table.columns) if numeric(column) and number != roles.get("t")]
+    moving = [number for number, column in enumerate(table.columns) if holds_numbers(column) and number != roles.get("t")]
     if record is None and len(moving) == 1 and not {"F", "T"} & set(roles):
         series = True
     command = _command(words, table, roles, record, series)
@@ -160,14 +160,18 @@ def _facts(table: Table, roles: dict[str, int], sentences: list[str]) -> list[Co
         low, high = (float(known.min()), float(known.max())) if known.size else (None, None)
         missing = int(np.isnan(values).sum()) if values.dtype.kind == "f" else 0
         unit = column.unit or split_unit(column.name)[1]
-        words = (*_plain(column), *own)
+        words = (*_plain(column, table), *own)
         facts.append(ColumnFacts(number + 1, column.name, names.get(number, ""), unit, low, high, missing, words, column))
     return facts
 
 
-def _plain(column: Column) -> list[str]:
+def _plain(column: Column, table: Table) -> list[str]:
     """What a column shows by itself: text, a constant, or a few levels as counting makes them."""
     if column.values.dtype.kind == "U":
+        known = numbers_but_for_a_word(column)
+        if known is not None:
+            row = int(np.flatnonzero(np.isnan(known))[0])
+            return [f'numbers, but "{column.values[row][:40]}" at {table.place(row)}']
         first = column.values[0] if column.values.size else ""
         return [f'text, such as "{first[:40]}"']
     if not numeric(column):
@@ -198,7 +202,7 @@ def _rate(table: Table, roles: dict[str, int], options: ReadOptions, where: str)
 def _command(words: list[str], table: Table, roles: dict[str, int], record: Record | None, series: bool) -> str:
     """The command to go on with, quoted for a shell."""
     if record is None and series:
-        moving = next((n for n, c in enumerate(table.columns) if numeric(c) and n != roles.get("t")), None)
+        moving = next((n for n, c in enumerate(table.columns) if holds_numbers(c) and n != roles.get("t")), None)
         if moving is None:
             return ""
         words = ["jaxbacklash", "chaos", *words[2:], "--channel", f"#{moving + 1}"]

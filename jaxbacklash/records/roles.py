@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import shlex
 
 import numpy as np
@@ -32,6 +33,10 @@ QUANTITIES = frozenset(("position", "pos", "angle", "data", "value", "values"))
 FOLLOWS = 0.7
 """Correlation with x above which a motion is that of the link against the ground (y) rather than against the base (z)."""
 
+MOSTLY = 0.9
+"""Share of a column's cells above which it is one of numbers in which words stand, such as "ERR" where a sensor failed."""
+FIRST_CELLS = 50
+
 
 def numeric(column: Column) -> bool:
     """Whether a column holds numbers that change."""
@@ -40,6 +45,30 @@ def numeric(column: Column) -> bool:
         return False
     known = values[np.isfinite(values)]
     return known.size > 1 and bool(known.min() < known.max())
+
+
+def numbers_but_for_a_word(column: Column) -> np.ndarray | None:
+    """The values (N,) of a column that is text for the sake of a few cells, NaN in their place; None for any other column.
+
+    Such a column stays text, and is refused by the row and word that made it so: here it only is a column that moves.
+    """
+    values = column.values
+    if values.dtype.kind != "U" or not values.size:
+        return None
+    known = np.full(values.size, np.nan)
+    for row, cell in enumerate(values.tolist()):
+        with contextlib.suppress(ValueError):
+            known[row] = float(cell.replace(",", "."))
+        if row == FIRST_CELLS and np.isfinite(known).sum() <= MOSTLY * row:
+            return None  # words from the beginning; all of a long column need not be looked at
+    share = np.isfinite(known).mean()
+    return known if MOSTLY < share < 1.0 else None
+
+
+def holds_numbers(column: Column) -> bool:
+    """Whether a column holds numbers that change, but for a word or two."""
+    known = numbers_but_for_a_word(column)
+    return numeric(column if known is None else Column(column.name, known))
 
 
 def _likeness(channel: str, column: Column) -> int:
@@ -101,7 +130,7 @@ def guess_roles(table: Table) -> dict[str, int]:
             for number, column in enumerate(table.columns):
                 if channel in found or number in found.values() or _likeness(channel, column) != level:
                     continue
-                if channel == "t" or numeric(column):
+                if channel == "t" or holds_numbers(column):
                     found[channel] = number
     if "t" not in found:
         times = [number for number, column in enumerate(table.columns) if number not in found.values() and _is_time(column)]
@@ -109,7 +138,9 @@ def guess_roles(table: Table) -> dict[str, int]:
     moves = {channel for channel in found if channel in ("z", "y")}
     if not moves and {"x", "F"} <= set(found):
         found["T"] = found.pop("F")  # beside the base's motion alone a force is the one that the joint transmits
-    rest = [n for n, column in enumerate(table.columns) if n not in found.values() and numeric(column) and not _is_time(column)]
+    rest = [
+        n for n, column in enumerate(table.columns) if n not in found.values() and holds_numbers(column) and not _is_time(column)
+    ]
     if not moves and "T" not in found and rest:
         if "x" not in found and "F" not in found and len(rest) > 1:
             found["x"] = rest.pop(0)
@@ -119,11 +150,16 @@ def guess_roles(table: Table) -> dict[str, int]:
     return dict(sorted(found.items(), key=lambda item: list(NAMES).index(item[0])))
 
 
+def _floats(column: Column) -> np.ndarray:
+    known = numbers_but_for_a_word(column)
+    return column.values if known is None else known
+
+
 def _motion(table: Table, found: dict[str, int], number: int) -> str:
     """Whether a motion looks like y or like z beside x."""
     if "x" not in found:
         return "y" if "F" in found else "z"
-    x, motion = table.columns[found["x"]].values, table.columns[number].values
+    x, motion = (_floats(table.columns[n]) for n in (found["x"], number))
     if x.size != motion.size:
         return "z"
     both = np.isfinite(x) & np.isfinite(motion)

@@ -29,10 +29,12 @@ INERTIAL = re.compile(r"(^|[^a-z])(a[ _.-]?[xyz]|acc\w*|gyr\w*)($|[^a-z])", re.I
 
 def quantities(channels: Mapping[str, np.ndarray], options: ReadOptions, stated: Collection[str]) -> list[Finding]:
     """Accelerations, counts and degrees taken for positions in radians; ``stated`` are the channels whose unit is known."""
-    return [*_inertial(channels, options), *(_counts(channels, options, stated) or degrees(channels, stated))]
+    return [*_inertial(channels, options), *(_counts(channels, options, stated) or degrees(channels, stated, options.scales))]
 
 
-def degrees(channels: Mapping[str, np.ndarray], stated: Collection[str]) -> list[Finding]:
+def degrees(
+    channels: Mapping[str, np.ndarray], stated: Collection[str], scaled: Mapping[str, float] | None = None
+) -> list[Finding]:
     """Degrees taken for radians.
 
     Absolute motion y of a force-driven link is not looked at: it may be in metres, or turn freely.
@@ -43,6 +45,9 @@ def degrees(channels: Mapping[str, np.ndarray], stated: Collection[str]) -> list
         In rad (or m, where the same bounds are wider still).
     stated : collection of str
         Channels whose unit was stated: those are believed.
+    scaled : mapping of float, or None
+        The factors by which channels were brought to radians. Where such a channel is too large for a joint, its factor is what
+        is asked about, and no remedy is known.
 
     Returns
     -------
@@ -74,6 +79,12 @@ def degrees(channels: Mapping[str, np.ndarray], stated: Collection[str]) -> list
         "--unit " + ",".join(f"{each}={unit}" for each in names)
         for names, unit in ((both, "deg"), (both, "mrad"), (beyond, "rad"))
     )
+    if scaled and scaled.get(name, 1.0) != 1.0:
+        found = (
+            f"is a {what} of up to {peak:.6g} with --scale {name}={scaled[name]:g}, where a joint has at most {most:.6g} "
+            f"radians; state the factor to radians (2 pi over the counts of a turn), or add {deg} where this one is to degrees"
+        )
+        return [Finding("degrees", ASK, name, found, size=peak, otherwise=rad)]
     text, remedy = f"degrees, or in milliradians ({mrad})", deg
     if peak > MILLI[name]:
         text, remedy = f"milliradians, or in degrees ({deg})", mrad
