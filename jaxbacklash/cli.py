@@ -236,9 +236,7 @@ def skeleton(
     )  # fmt: skip
 
 
-@app.command(
-    "lost-motion", cls=Checked, epilog="Example: jaxbacklash lost-motion slow1.csv --columns t=t,motor=enc1,link=enc2 --ratio 35"
-)
+@app.command("lost-motion", cls=Checked, epilog="Example: jaxbacklash lost-motion slow1.csv --ratio 35 --out slow1")
 @reads
 def lost_motion(
     record: SlowRecord,

@@ -112,7 +112,9 @@ def cross_check(fit: Fit) -> CrossCheck:
         names = " and ".join(METHODS[m.method] for m in judges)
         agree = f"{names[:1].upper()}{names[1:]}, independent of the fit, agree with its play and stiffness"
         missing = _left_out(found)
-        return CrossCheck(found, True, f"{agree}, with errors that allow for this: {missing}." if missing else f"{agree}.")
+        return CrossCheck(
+            found, True, f"{agree}. Their errors allow for what they do not know: {missing}." if missing else f"{agree}."
+        )
     return CrossCheck(found, False, _broken(fit, found, tuple(apart)), "", tuple(apart))
 
 

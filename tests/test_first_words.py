@@ -45,7 +45,7 @@ def test_the_first_screen_is_whole_and_says_where_to_begin(tmp_path):
     [
         (["fit", "a.csv", "--inertia", "1,5"], "--inertia 1,5: wanted a number, with a point and not a comma"),
         (["fit", "a.csv", "--starts=two"], "--starts two: wanted a whole number"),
-        (["fit"], "RECORDS is missing: One or more records"),
+        (["fit"], "RECORDS is missing: Records"),
         (["fit"], "Example: jaxbacklash fit run1.csv"),
         (["simulate", "a.toml"], "--out is missing: Record to write"),
         (["fti", "a.csv"], "Did you mean 'fit'?"),

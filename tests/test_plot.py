@@ -16,6 +16,7 @@ from jaxbacklash.plot.drawing import on_page
 from jaxbacklash.plot.motion import Motion
 
 from . import made_up
+from .test_many import rows
 
 matplotlib.use("Agg")
 
@@ -74,6 +75,17 @@ def test_titles_of_a_fit_do_not_run_into_each_other():
     page.draw_without_rendering()
     first, second = (ax._left_title.get_window_extent() for ax in page.axes if ax.get_title(loc="left")[:2] in ("A,", "B,"))
     assert first.x1 < second.x0
+
+
+def test_the_windows_that_are_shown_closely_tell_the_error_that_everything_else_tells():
+    fit = made_up.fit(miss=0.04)
+    axes = several(plot.fit, 5, fit)
+    worst = int(np.nanargmax(fit.score.window_rms))
+    title = " ".join(axes[1].get_title(loc="left").split())
+    assert (
+        title
+        == f"A, missed most: {fit.score.window_rms[worst]:.3g} times the noise, window from {fit.score.window_times[worst]:.5g} s"
+    )
 
 
 def test_a_stretch_of_a_fit_is_drawn_window_by_window():
@@ -229,6 +241,21 @@ def test_where_a_model_fails():
     assert np.array_equal(steps(one(plot.where_it_fails, found))[0][0], place.misfit)
     assert "No torque" in one(plot.torque_over, made_up.adequate()).texts[0].get_text()
     assert "none of the coordinates" in one(plot.where_it_fails, made_up.adequate()).texts[0].get_text()
+
+
+def test_a_parameter_over_the_records_and_its_change():
+    of = jb.Each("fit", tuple(rows(40, growth=0.1)))
+    told, ax = of.courses["backlash"], one(plot.course, of)
+    assert curve(ax, told.numbers, told.values)
+    bars = ax.collections[0].get_segments()
+    assert np.allclose([bar[1, 1] - bar[0, 1] for bar in bars], 2 * 1.96 * told.stderr)
+    assert curve(ax, [told.numbers[0], told.numbers[told.change.at] - 0.5], [told.change.before] * 2)
+    assert curve(ax, [told.numbers[told.change.at] - 0.5, told.numbers[-1]], [told.change.after] * 2)
+    still = jb.Each("fit", tuple(rows(40)))
+    along, line = one(plot.course, still).get_lines()[-1].get_data()
+    assert np.array_equal(line, still.courses["backlash"].trend.band(along)[0])
+    with pytest.raises(jb.BadInput, match="no record has this parameter"):
+        plot.course(of, "gravity.G")
 
 
 # ---- axes, figures, looks ----

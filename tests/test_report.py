@@ -14,6 +14,7 @@ from jaxbacklash.plot.drawing import on_page, svg_of, to_png_data_uri, to_svg
 from jaxbacklash.plot.models import error_by_stage
 from jaxbacklash.report.facts import _sentence
 from jaxbacklash.report.html import Panel, render, write_report
+from jaxbacklash.report.summary import candidate_tables
 
 from .report_samples import HOSTILE, all_figures, motion, result, stages
 
@@ -97,6 +98,28 @@ def test_page_of_a_bare_result(command):
     text = render(one, [])
     assert "Stage by stage" not in text
     assert "rms over noise 12.9" in text
+
+
+def test_nothing_is_said_twice_and_what_comes_next_is():
+    one = result() | {"verdict_text": "A torque is missing.", "findings": ["A torque is missing.", "It falls with y."]}
+    text = render(one | {"next": "jaxbacklash refine 'my arm.csv'"}, [])
+    assert text.count("A torque is missing.") == 1
+    assert "It falls with y." in text
+    assert "Next, to find what is missing: <code>jaxbacklash refine &#39;my arm.csv&#39;</code>" in text
+    assert "Next, to find" not in render(one, [])
+    listed = [{"name": f"law_{n}", "evidence": 1.0, "why": "predicted from sensitivities, not refitted"} for n in range(9)]
+    listed.append({"name": "dahl", "why": "refitted"})
+    shown = candidate_tables([stages()[0] | {"candidates": listed}])[0]
+    assert [row["why"] for row in shown["rows"]] == [""] * 9 + ["refitted"]
+    assert shown["reasons"]
+
+
+def test_the_table_of_stages_has_a_column_for_each_error_and_the_share_below(page):
+    text = " ".join(page.split())
+    assert '<th scope="col">rms over noise</th><th scope="col">held out</th>' in text
+    assert "<td>12.9<code>2.1 % of the motion, median window 11.8</code></td>" in text
+    assert "<td>13.4<code>2.2 % of the motion, median window 12.0</code></td>" in text
+    assert "<td>1.01<code>0.16 % of the motion, median window 0.990</code></td><td>–</td>" in text
 
 
 def test_a_panel_takes_an_image_and_refuses_the_rest():

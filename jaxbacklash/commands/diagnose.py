@@ -111,7 +111,9 @@ def text(fit: Fit, found: Findings, ranking: Ranking, causes: Sequence[Cause] = 
         lines += ["", "tested against                    of the torque   strength  chance"]
         lines += [f"  {d.label:<31} {d.of:<14} {d.strength:8.2f}  {_chance(d.p)}" for d in found.dependences[:8]]
         lines += ["", "the fit's parameters, as fitted and beside the missing torque"]
-        lines += [f"  {name:<24} {a:12.6g} {b:12.6g}" for name, (a, b) in found.surface.moved.items()]
+        for name, (a, b) in found.surface.moved.items():
+            unit = fit.parameters[name].unit if name in fit.parameters else ""
+            lines.append(f"  {name:<24} {a:12.6g} {b:12.6g} {unit}".rstrip())
     if found.adequate:
         return "\n".join(lines)
     if causes:

@@ -68,6 +68,8 @@ def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, *, silent
     words = shlex.join(["jaxbacklash", *sys.argv[1:]])
     causes: list[Cause] = find_causes(found, tell)
     result = result_of(found, command="fit", command_line=words, version=__version__, causes=causes)
+    if not found.adequate and not causes and len(found.records) == 1:
+        result["next"] = refining(sys.argv[1:])
     text = json_text(result)
     if folder is not None:
         from ..report.fit_report import fit_report  # pictures bring matplotlib, which a plain run need not wait for
@@ -93,8 +95,8 @@ def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, *, silent
     elif not silent:
         print(fit_text(found, causes))
         print(result["cross_check"]["text"])
-        if not found.adequate and not causes and len(found.records) == 1:
-            print(f"next, to find what is missing: {refining(sys.argv[1:])}")
+        if "next" in result:
+            print(f"next, to find what is missing: {result['next']}")
         if folder is not None:
             print(f"written: {folder}/result.json, model.toml, report.html")
 

@@ -67,15 +67,9 @@ def text(found: Description) -> str:
     if found.questions:
         answered = " (the command below takes what is proposed)" if found.record is not None else ""
         lines += ["", f"to be settled{answered}", *(f"  {question}" for question in found.questions)]
-    kind = {
-        "base_motion": "a record of base motion", "force": "a force-driven record", "free_decay": "a free decay",
-        "transmitted": "base motion with the transmitted force", "series": "a series of one channel",
-        "loop": "a slow loop of torque over angle", "drive": "a drive: torque at its motor, and what its encoders show",
-    }.get(found.kind or "", "no record that can be fitted as it stands")  # fmt: skip
-    ready = found.record is not None or found.kind == "series"
-    lines += ["", f"it seems to be {kind}"]
+    lines += ["", f"it seems to be {found.seems}"]
     if found.command:
-        lines.append(f"{'next' if ready else 'once that is settled'}: {found.command}")
+        lines.append(f"{'next' if found.ready else 'once that is settled'}: {found.command}")
     return "\n".join(lines).rstrip()
 
 

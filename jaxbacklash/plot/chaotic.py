@@ -71,7 +71,7 @@ def attractor(found: ChaosReport, unit: str = "", *, ax: Where = None) -> list[A
     '1 samples later'
     """
     both = [("as measured", found.series, MEASURED)]
-    if found.cleaned is not None:
+    if found.cleaned is not None and found.cleaned.why_untouched is None:
         both.append(("noise taken off", found.cleaned.series, MODEL))
     axes = panels(ax, 1, len(both), height=MEDIUM + 0.2)
     later = found.delay.samples

@@ -29,7 +29,8 @@ def column_over_rows(facts: ColumnFacts, begins: int, *, ax: Where = None) -> li
     rows = np.arange(values.size) + float(begins)
     at, low, high = envelope(rows, values)
     whole.fill_between(at, low, high, color=MEASURED, lw=0.8)
-    whole.set(ylabel=with_unit(facts.role or facts.name, facts.unit), xlabel="line of the file" if begins > 1 else "row")
+    across = "line of the file" if begins > 1 else "row"
+    whole.set(ylabel=with_unit(facts.role or facts.name, facts.unit or "as in the file"), xlabel=across)
     whole.set_xlim(rows[0], rows[-1])
     if len(axes) == 1:
         return axes
@@ -38,7 +39,7 @@ def column_over_rows(facts: ColumnFacts, begins: int, *, ax: Where = None) -> li
     first, last = _busiest(values)
     close.plot(rows[first:last], values[first:last], color=MEASURED, marker=".", ms=3, lw=0.8)
     close.set_title("where it moves most, row by row", loc="left")
-    close.set(xlim=(rows[first], rows[last - 1]))
+    close.set(xlim=(rows[first], rows[last - 1]), xlabel=across)
     return axes
 
 

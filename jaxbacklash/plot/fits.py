@@ -94,7 +94,7 @@ def fit(found: Fit | Comparison, *, record: int = 0, between: tuple[float, float
     }  # fmt: skip
     if between is not None:
         return stretch_of_model(score.t, score.measured, score.predicted, between=between, ax=ax, **what)
-    return measured_against_model(score.t, score.measured, score.predicted, ax=ax, **what)
+    return measured_against_model(score.t, score.measured, score.predicted, window_rms=score.window_rms, ax=ax, **what)
 
 
 def residuals(found: Fit | Comparison, *, record: int = 0, ax: Where = None) -> Drawn:

@@ -20,8 +20,9 @@ HUGE = 30.0  # noise units from which a residual is drawn on a logarithmic scale
 
 @picture
 def measured_against_model(
-    t: Any, measured: Any, model: Any, *, window_starts: Any, label: str, unit: str, noise: float | None, ax: Where = None
-) -> list[Axes]:
+    t: Any, measured: Any, model: Any, *, window_starts: Any, label: str, unit: str, noise: float | None,
+    window_rms: Any = None, ax: Where = None,
+) -> list[Axes]:  # fmt: skip
     """The whole record above; below, the stretch that the model misses most and a typical one. On one axes, the whole record.
 
     Parameters
@@ -30,6 +31,8 @@ def measured_against_model(
     window_starts : (K,) times at which a prediction starts anew from its own estimated state [s]
     label, unit : what was measured, ``"z"`` in ``"rad"``
     noise : standard deviation of the measurement noise [unit]; None: unknown, no band is drawn
+    window_rms : (K,) the prediction error of each window over the noise [1], which counts that of the input as well, as every
+        error does that is told; None: the difference itself tells which window is missed most
     ax : where to draw
     """
     t, measured, model = column(t), column(measured), column(model)
@@ -49,7 +52,9 @@ def measured_against_model(
     legend_above(axes, *_marks(whole, noise, label))
     whole.set_title("the whole record, time in s", loc="left")
     edges = window_bounds(t, window_starts)
-    misfit = window_misfit(measured - model, edges)
+    misfit, over_noise = window_misfit(measured - model, edges), column([] if window_rms is None else window_rms)
+    judged = over_noise.size == misfit.size
+    misfit = over_noise if judged else misfit
     for place, (index, name) in enumerate(zip(worst_and_typical(misfit), ("missed most", "typical"))):
         stretch = stretch_around(index, edges)
         start, end = t[stretch][0], t[stretch][-1]
@@ -61,7 +66,7 @@ def measured_against_model(
         local = [e - stretch.start for e in edges if stretch.start <= e <= stretch.stop]
         _zoom(upper, t[stretch], measured[stretch], model[stretch], local, noise)
         _left_over(lower, t[stretch], (measured - model)[stretch], local, noise, unit)
-        missed = _how_far(misfit[index], noise, label, unit)
+        missed = f"{misfit[index]:.3g} times the noise" if judged else _how_far(misfit[index], noise, label, unit)
         upper.set_title(f"{'AB'[place]}, {name}: {missed},\nwindow from {t[edges[index]]:.5g} s", loc="left")
         upper.tick_params(labelbottom=False)
         lower.set_xlim(upper.get_xlim())

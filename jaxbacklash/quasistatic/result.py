@@ -100,7 +100,7 @@ def text(found: LostMotion) -> str:
         lines.append(f"  {'transmission error':<24} {found.peak_to_peak:.4g} {found.unit} peak to peak")
         lines += [f"    {one.turn} turn, order {one.order}: amplitude {one.amplitude:.3g} +- {one.stderr:.2g} {found.unit}"
                   for one in found.transmission_error]  # fmt: skip
-    lines.append("what this rests on")
+    lines.append(f"what this rests on, lengths in {found.unit}")
     lines += [f"  {MARKS[one.holds]} {one.name}: {one.found}" for one in found.conditions]
     lines += [f"note: {sentence}" for sentence in found.notes]
     lines.append(verdict(found))

@@ -32,6 +32,12 @@ MOST_QUESTIONS = 8
 MOST_LEVELS = 4096
 """Distinct values up to which a column is told to be counted."""
 
+KINDS = {
+    "base_motion": "a record of base motion", "force": "a force-driven record", "free_decay": "a free decay",
+    "transmitted": "base motion with the transmitted force", "series": "a series of one channel",
+    "loop": "a slow loop of torque over angle", "drive": "a drive: torque at its motor, and what its encoders show",
+}  # fmt: skip
+
 
 @dataclasses.dataclass(frozen=True)
 class ColumnFacts:
@@ -69,6 +75,16 @@ class Description:
     command: str
     record: Record | None
     obstacle: str = ""
+
+    @property
+    def seems(self) -> str:
+        """What the file seems to be, in words."""
+        return KINDS.get(self.kind or "", "no record that can be fitted as it stands")
+
+    @property
+    def ready(self) -> bool:
+        """Whether the command to go on with can be typed as it stands."""
+        return self.record is not None or self.kind == "series"
 
     def as_json(self) -> dict[str, Any]:
         """result.json of `look`."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..records import MeasuredSeries
 from ..timeseries import ChaosReport
-from ..timeseries.result import drift_words, sizes_in_words, why_wide
+from ..timeseries.result import drift_words, tables_in_words, why_wide
 from .result import SCHEMA, finite
 
 
@@ -69,11 +69,10 @@ def choices(found: ChaosReport) -> list[tuple[str, str]]:
         maps = ", ".join(f"{one.dimension} with {one.neighbours}" for one in (found.exponent or found.raw_exponent).maps)
         rows.append(("local maps", f"those that predict best out of sample; coordinates with neighbours: {maps}"))
     if found.driven is not None and found.driven.value is not None:
-        cells = sizes_in_words(found.driven.used)
-        what = f"the acceleration as tables over position and velocity, of {cells} cells"
+        what = f"the acceleration over position and velocity, read as {tables_in_words(found.driven.used)}"
         rows.append(("law of motion", f"{what}: those that predict best on stretches they were not fitted to"))
         if found.driven.drift:
-            rows.append(("the law drifts", f"{drift_words(found.driven.drift)}: so it predicts clearly better"))
+            rows.append(("the law drifts", f"{drift_words(found.driven.drift)}; a law that may drift predicts clearly better"))
     if found.cleaned is not None:
         used = "the exponent is from the cleaned series" if found.uses_cleaned else "the exponent is from the series as measured"
         used = "the exponent is not from it" if found.conditional else used

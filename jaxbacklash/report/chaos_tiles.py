@@ -39,7 +39,7 @@ def chaos_tiles(result: Mapping[str, Any]) -> list[dict[str, str]]:
     tested = result.get("surrogates") or {}
     if is_number(tested.get("p_value")):
         rest = f"against {tested.get('count')} {str(tested.get('kind')).upper()} surrogates"
-        tiles.append({"label": "chance", "value": short(tested["p_value"]), "unit": "", "rest": rest})
+        tiles.append({"label": "chance of linear noise", "value": short(tested["p_value"]), "unit": "", "rest": rest})
     return tiles
 
 

@@ -67,6 +67,8 @@ def failure_panels(found: Findings) -> list[Panel]:
 
 
 def _explained(surface: Surface) -> str:
-    moved = ", ".join(f"{name} from {a:.5g} to {b:.5g}" for name, (a, b) in surface.moved.items() if abs(b - a) > 1e-3 * abs(a))
+    moved = ", ".join(
+        f"{name} by {100 * (b / a - 1):+.2g} %" for name, (a, b) in surface.moved.items() if a and abs(b - a) > 1e-3 * abs(a)
+    )
     text = f"{surface} The share is told out of sample: stretches of the record are predicted from the others."
     return text + (f" With this torque in place the fit's own values move: {moved}." if moved else "")

@@ -27,7 +27,7 @@ def facts(result: Entry, record: Entry, path: str, stages: Sequence[Entry]) -> I
     if record.get("channels"):
         yield "channels", ", ".join(map(str, record["channels"]))
     if record.get("kind"):
-        yield "kind of record", str(record["kind"])
+        yield "kind of record", str(record["kind"]).replace("_", " ")
     length, inertia = length_unit(stages), result.get("inertia")
     for channel, value in (result.get("noise") or {}).items():
         own = {"m": "N", "rad": "N m"}.get(length, "") if channel in ("F", "T") else length
@@ -48,7 +48,11 @@ def facts(result: Entry, record: Entry, path: str, stages: Sequence[Entry]) -> I
 
 def rests_on(result: Entry) -> Iterator[tuple[str, str]]:
     """What a reading without a model rests on: each condition, whether it holds, and what was found."""
-    for entry in result.get("conditions") or []:
+    conditions = result.get("conditions") or []
+    unit = str((result.get("transmission_error") or {}).get("unit") or "")
+    if conditions and unit:
+        yield "lengths below", f"in {unit}"
+    for entry in conditions:
         holds = {True: "yes", False: "no"}.get(entry.get("holds"), "the record cannot tell")
         yield f"condition: {entry.get('name')}", f"{holds}; {entry.get('found')}"
 

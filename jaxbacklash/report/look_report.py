@@ -12,6 +12,7 @@ from .html import Panel, write_report
 
 MOST_PICTURES = 24
 """Columns that are drawn; a file of hundreds of channels is listed whole in result.json."""
+UNSTATED = "(the file states no unit)"
 
 
 def look_report(found: Description, result: dict[str, Any], path: Path) -> None:
@@ -19,21 +20,27 @@ def look_report(found: Description, result: dict[str, Any], path: Path) -> None:
     page = {
         **result,
         "command": "look",
-        "verdict_text": f"Next: {found.command}" if found.command else found.obstacle,
+        "verdict_text": f"It seems to be {found.seems}. {_next(found)}",
         "findings": [*found.questions, *found.notes],
         "record": {"path": found.path, "samples": found.table.rows, "rate_hz": found.rate_hz},
     }
     write_report(path, page, panels(found))
 
 
+def _next(found: Description) -> str:
+    if not found.command:
+        return found.obstacle
+    return f"{'Next' if found.ready else 'Once what is asked below is settled'}: {found.command}"
+
+
 def panels(found: Description) -> list[Panel]:
     """One picture a column, those with a role first."""
     ordered = sorted(found.columns, key=lambda column: (not column.role, column.number))
     begins = found.table.first_line or 1
-    shown = []
+    shown: list[Panel] = []
     for facts in ordered[:MOST_PICTURES]:
         role = f", taken as {facts.role}" if facts.role else ""
-        span = "" if facts.low is None else f"{facts.low:.6g} to {facts.high:.6g} {facts.unit}".strip()
+        span = "" if facts.low is None else f"{facts.low:.6g} to {facts.high:.6g} {facts.unit or UNSTATED}"
         sentence = ". ".join(text.rstrip(".") for text in facts.findings) or span
         if facts.column.values.dtype.kind == "f":
             picture = svg_of(column_over_rows, facts, begins)

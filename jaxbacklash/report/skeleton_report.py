@@ -25,10 +25,10 @@ def skeleton_panels(found: Skeletons) -> list[Panel]:
     panels = [
         Panel(
             "Envelopes",
-            f"Both methods' envelopes over the record; grey stretches are masked, {share:.0f} % of the record counts.",
+            f"Both methods' envelopes over the record; grey stretches are masked, {share:.0f} % of the record counts"
+            f"{'; the notes under Parameters say why' if found.warnings else ''}.",
             svg_of(plot.envelopes, found),
             "envelopes",
-            "\n".join(found.warnings) or None,
         ),
         Panel(
             "Instantaneous frequency",
@@ -49,7 +49,7 @@ def skeleton_panels(found: Skeletons) -> list[Panel]:
                 "on the motion that was measured, not from where a line cuts the axis.",
                 svg_of(plot.skeleton, found),
                 "force",
-                "f_s = A omega_0^2(A), equation (3.7) of the source paper, per unit inertia. Points are moments; bars two "
+                "f_s = A ω₀²(A), equation (3.7) of the source paper, per unit inertia. Points are moments; bars two "
                 "standard errors of a bin's mean. The describing function of a sine assumes that z has no harmonics; near the "
                 "edges of the play it has, and the one of the measured motion allows for them.",
             ),

@@ -37,6 +37,7 @@ def summarise(result: Entry) -> dict[str, Any]:
     if not stages and ("parameters" in result or "rms_over_noise" in result):
         stages = [result]  # a comparison of one model may come without a list
     record = result.get("record") or {}
+    said = str(result.get("verdict_text") or "")
     path = str(record.get("path") or "record")
     return {
         "command": str(result.get("command") or ""),
@@ -44,8 +45,9 @@ def summarise(result: Entry) -> dict[str, Any]:
         "verdict": str(result.get("verdict") or ""),
         "settled": result.get("verdict") in SETTLED,
         # The page says the verdict's word itself, so a sentence need not begin with it.
-        "verdict_text": str(result.get("verdict_text") or "").removeprefix("Incomplete: ").removeprefix("Complete: "),
-        "findings": [*_causes(result), *(str(sentence) for sentence in result.get("findings") or [])],
+        "verdict_text": said.removeprefix("Incomplete: ").removeprefix("Complete: "),
+        "findings": [one for one in (*_causes(result), *map(str, result.get("findings") or [])) if one not in said],
+        "next": str(result.get("next") or ""),
         "tiles": chaos_tiles(result)
         if "lyapunov" in result
         else _tiles([best_method(result)] if result.get("command") == "skeleton" else stages, record),
@@ -53,6 +55,7 @@ def summarise(result: Entry) -> dict[str, Any]:
         "parameters": parameter_rows(stages, str(result.get("intervals_note") or "")),
         "no_intervals": _no_intervals(result),
         "stages": stage_rows(stages, record) if len(stages) > 1 else [],
+        "error_heads": ["rms over noise", *(["held out"] if _some_heldout(stages) else [])],
         "stage_heads": _stage_heads(stages),
         "scores": _scores(stages[-1], record) if stages and "rms_over_noise" in stages[-1] else [],
         "candidates": candidate_tables(stages),
@@ -134,7 +137,7 @@ def stage_rows(stages: Sequence[Entry], record: Entry) -> list[dict[str, Any]]:
         rows.append(
             {
                 "name": stage_name(stage, number).replace("_\n", "_").replace("\n", " "),
-                "scores": [text for _, text in _scores(stage, record)],
+                "scores": _errors(stage, record)[: 2 if _some_heldout(stages) else 1],
                 "values": [(brief(found.get(name), unit=False), _step((stage.get("moved") or {}).get(name))) for name in BASE],
             }
         )
@@ -153,7 +156,7 @@ def candidate_tables(stages: Sequence[Entry]) -> list[dict[str, Any]]:
                 "name": str(entry.get("name", "?")),
                 "rms": short(error_with(entry)),
                 "evidence": format_evidence(entry.get("evidence")),
-                "why": str(entry.get("why") or ""),
+                "why": _remark(entry),
             }
             for entry in listed
         ]
@@ -162,13 +165,19 @@ def candidate_tables(stages: Sequence[Entry]) -> list[dict[str, Any]]:
     return tables
 
 
+def _remark(entry: Entry) -> str:
+    """What is remarked on a candidate; nothing where both figures are predicted, as most are, which stands above the table."""
+    why = str(entry.get("why") or "")
+    return "" if why.startswith("predicted") else why
+
+
 def _tiles(stages: Sequence[Entry], record: Entry) -> list[dict[str, str]]:
     if not stages:
         return []
     tiles = []
-    for name in (*BASE, "inertia"):  # the inertia only where it was fitted
+    for name in (*BASE, "inertia"):
         entry = parameters_of(stages[-1]).get(name)
-        if entry is None:
+        if entry is None or (name == "inertia" and not is_number(entry.get("stderr"))):  # the inertia only where it was fitted
             continue
         shown = parts(entry)
         # Degrees are what a person pictures, so they come first where there are any; radians stay beside them.
@@ -200,6 +209,20 @@ def _scores(stage: Entry, record: Entry) -> list[tuple[str, str]]:
         ("heldout_median_over_noise", "held-out median"),
     )
     return [(label, _error(stage, key)) for key, label in names]
+
+
+def _some_heldout(stages: Sequence[Entry]) -> bool:
+    return any(is_number(stage.get("heldout_rms_over_noise")) for stage in stages)
+
+
+def _errors(stage: Entry, record: Entry) -> list[tuple[str, str]]:
+    """The error on the record and on the held-out one, each with its share of what was measured and the median window below."""
+    pairs = []
+    for before in ("", "heldout_"):
+        told, median = share(stage, record, f"{before}nrmse").removeprefix(", "), stage.get(f"{before}median_over_noise")
+        below = [*([told] if told else []), *([f"median window {short(median)}"] if is_number(median) else [])]
+        pairs.append((short(stage.get(f"{before}rms_over_noise")), ", ".join(below)))
+    return pairs
 
 
 def _error(stage: Entry, key: str) -> str:

@@ -117,6 +117,6 @@ def sentence(missed: Omitted, names: tuple[str, ...], values: np.ndarray, mass: 
     if missed.name == "gravity":
         remedy = f"if it is the weight, say --gravity {missed.strength / mass:.4g} (in 1/s^2)"
     return (
-        f"a torque like {WORDS[missed.name]}{other} was left out: with it the {name} would change by {percent:+.2g} %, "
-        f"{missed.errors:.1f} of its standard errors; {remedy}"
+        f"a torque like {WORDS[missed.name]}{other} was left out, with which the {name} would change by {percent:+.2g} %, "
+        f"{missed.errors:.2g} of its standard errors; {remedy}"
     )

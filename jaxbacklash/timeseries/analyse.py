@@ -125,7 +125,8 @@ def chaos(
         cleaned, by_average = clean_series(series, period)
         uses_cleaned = cleaned.gain_db is not None and cleaned.gain_db >= WORTH_IT_DB
         tell("choosing the dimension", 0.80)
-        cleaned_dimension = embedding_dimension(cleaned.series, delay.samples, theiler, rng)
+        of_cleaned = embedding_dimension(cleaned.series, delay.samples, theiler, rng)
+        cleaned_dimension = of_cleaned if cleaned.why_untouched is None else None  # of the same series once more
         if uses_cleaned and not conditional and verdict.word in ("chaotic", "undecided"):
             working = (cleaned.series - cleaned.series.mean()) / cleaned.series.std()
             tell("fitting local maps", 0.84)

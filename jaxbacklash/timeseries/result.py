@@ -171,17 +171,19 @@ def text(found: ChaosReport) -> str:
         f"  embedding dimension             {_or_none(raw.cao)} by Cao's E1, {_or_none(raw.false_neighbours)} by false "
         "neighbours",
     ]
-    if found.cleaned is not None and found.cleaned_dimension is not None:
+    if found.cleaned is not None:
         gain = "unknown" if found.cleaned.gain_db is None else f"{found.cleaned.gain_db:.1f} dB"
         use = "used for the exponent" if found.uses_cleaned else "not used: it would gain too little"
         use = "the exponent is not from it" if found.conditional else use
         use = f"taken off: gain about {gain}, {use}"
         use = found.cleaned.why_untouched or use
-        lines += [
-            f"  after noise reduction           {_or_none(found.cleaned_dimension.cao)} by Cao's E1, "
-            f"{_or_none(found.cleaned_dimension.false_neighbours)} by false neighbours",
-            f"  noise                           {100 * found.cleaned.noise:.2g} % of the signal; {use}",
-        ]
+        after = found.cleaned_dimension
+        if after is not None:
+            lines.append(
+                f"  after noise reduction           {_or_none(after.cao)} by Cao's E1, {_or_none(after.false_neighbours)} by "
+                "false neighbours"
+            )
+        lines.append(f"  noise                           {100 * found.cleaned.noise:.2g} % of the signal; {use}")
     d = found.correlation
     shown = f"{d.dimension:.2f} +- {d.spread:.2f}" if d.dimension is not None else f"none: {d.why}"
     lines.append(f"  correlation dimension           {shown}")
@@ -228,21 +230,22 @@ def _driven(found: ChaosReport) -> list[str]:
     if one.value is None or one.interval is None or one.second is None or one.error is None:
         return [f"  under the measured drive        none: {one.why}"]
     low, high = (end / found.dt for end in one.interval)
-    cells = sizes_in_words(one.used)
     told = f"  under the measured drive        {one.value / found.dt:.4g} 1/s, {low:.4g} to {high:.4g}"
     return [
         "  how                             tangent of the measured law along the record" if found.conditional else told,
         f"  its second exponent             {one.second / found.dt:.4g} 1/s; together they are the rate at which volumes shrink",
-        f"  law of motion                   tables over position and velocity of {cells} cells, which miss the acceleration by "
+        f"  law of motion                   read from the record as {tables_in_words(one.used)}; it misses the acceleration by "
         f"{100 * one.error:.2g} %",
         *([f"  the law drifts                  {drift_words(one.drift)}"] if one.drift else []),
     ]
 
 
-def sizes_in_words(used: Sequence[tuple[int, Any, Any]]) -> str:
-    """The sizes of the tables that were used: ``57``, ``40, 48 and 57``, each once, in rising order."""
-    sizes = [str(size) for size in sorted({size for size, _, _ in used})]
-    return " and ".join(part for part in (", ".join(sizes[:-1]), sizes[-1]) if part)
+def tables_in_words(used: Sequence[tuple[int, Any, Any]]) -> str:
+    """What the law of motion was read as: ``a table of 57 positions`` or ``3 tables of 40 to 57 positions``."""
+    sizes = sorted({size for size, _, _ in used})
+    if len(sizes) == 1:
+        return f"a table of {sizes[0]} positions"
+    return f"{len(sizes)} tables of {sizes[0]} to {sizes[-1]} positions"
 
 
 def drift_words(drift: float) -> str:
