@@ -166,15 +166,19 @@ def _read(path: str | Path) -> tuple[dict[str, Any], str]:
         text = Path(path).read_text(encoding="utf-8-sig")
         data = tomllib.loads(text)
     except FileNotFoundError:
-        raise BadInput(f"{where}: no such file, wanted a model file (TOML)") from None
+        raise BadInput(f"{where}: no such file, wanted a model file (TOML), as fit --out writes it") from None
     except (OSError, UnicodeDecodeError) as error:
         raise BadInput(f"{where}: cannot be read as text ({type(error).__name__}), wanted a model file (TOML)") from None
     except RecursionError:
-        raise BadInput(f"{where}: holds lists or tables nested too deep, wanted TOML with a [model] table") from None
+        raise BadInput(
+            f"{where}: holds lists or tables nested too deep, wanted TOML with a [model] table, as fit --out writes it"
+        ) from None
     except ValueError as error:  # among them a number of thousands of digits
         if isinstance(error, BadInput):
             raise
-        raise BadInput(f"{where}: not a model file: {str(error).splitlines()[0]}, wanted TOML with a [model] table") from None
+        raise BadInput(
+            f"{where}: not a model file: {str(error).splitlines()[0]}, wanted TOML with a [model] table, as fit --out writes it"
+        ) from None
     return data, where
 
 

@@ -182,7 +182,7 @@ CASES = [
     ("output not named", table(named(z="enc2")), ["the columns t, x, enc2", "--columns z=enc2"]),
     ("force alone", table(lambda good: without("x", "z")(good | {"F": good["x"]})), ["the columns t, F"]),
     ("mapped column missing", table(named(z="enc2"), "--columns", "z=enc3"), ['"enc3"', "did you mean enc2"]),
-    ("mapping without =", table(without(), "--columns", "enc2"), ["--columns", '"enc2"', "x=VALUE"]),
+    ("mapping without =", table(without(), "--columns", "enc2"), ["--columns", '"enc2"', "x=NAME_OF_A_COLUMN"]),
     ("mapping of nothing", table(without(), "--columns", "z="), ["--columns", '"z="']),
     ("mapping twice", table(without(), "--columns", "z=a,z=b"), ["--columns", "the channel z twice"]),
     ("one column for two", table(without(), "--columns", "x=z,z=z"), ['"z" for x and for z', "one channel for it"]),

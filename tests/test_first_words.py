@@ -9,6 +9,7 @@ import typer.main
 
 import jaxbacklash as jb
 from jaxbacklash.cli import app
+from jaxbacklash.commands.fit import refining
 from jaxbacklash.commands.options import EFFECTS
 from jaxbacklash.fitting.setup import add_effects
 from tests.in_process import call
@@ -58,6 +59,12 @@ def test_a_wrong_word_is_answered_with_what_was_wanted(tmp_path, words, said):
     assert told.err.startswith("error: ")
     assert said in told.err
     assert len(told.err.splitlines()) == 1
+
+
+def test_the_command_after_a_fit_is_one_that_refine_takes():
+    words = ["fit", "./run1.csv", "run2.csv", "--heldout", "run2.csv", "--effects=gravity", "--out", "fit1", "--inertia", "3"]
+    assert refining(words, ["run2.csv"]) == "jaxbacklash refine ./run1.csv --heldout run2.csv --inertia 3"
+    assert refining(["fit", "a.csv", "a.csv"], ["a.csv"]) == "jaxbacklash refine a.csv"
 
 
 def test_a_misspelt_effect_is_answered_with_the_nearest(tmp_path):

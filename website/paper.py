@@ -61,7 +61,7 @@ def section(item: Item) -> str:
             f'<figure class="law paper" tabindex="0" role="group" aria-label="Picture of {item.name}">\n{svg}\n</figure>\n'
         )
     if item.beside:
-        text += ["| | paper | here | |", "|---|---|---|---|"]
+        text += ["| | paper | here | unit |", "|---|---|---|---|"]
         text += [f"| {row.what} | {cell(row.paper)} | {cell(row.ours)} | {row.unit} |" for row in item.beside]
         text.append("")
     return "\n".join(text)

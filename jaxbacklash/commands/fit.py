@@ -68,8 +68,8 @@ def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, *, silent
     words = shlex.join(["jaxbacklash", *sys.argv[1:]])
     causes: list[Cause] = find_causes(found, tell)
     result = result_of(found, command="fit", command_line=words, version=__version__, causes=causes)
-    if not found.adequate and not causes and len(found.records) == 1:
-        result["next"] = refining(sys.argv[1:])
+    if not found.adequate and not causes:
+        result["next"] = refining(sys.argv[1:], [record.path for record in found.records[1:]])
     text = json_text(result)
     if folder is not None:
         from ..report.fit_report import fit_report  # pictures bring matplotlib, which a plain run need not wait for
@@ -101,18 +101,26 @@ def deliver(found: Fit, folder: Path | None, machine: bool, tell: Any, *, silent
             print(f"written: {folder}/result.json, model.toml, report.html")
 
 
-def refining(words: Sequence[str]) -> str:
+def refining(words: Sequence[str], others: Sequence[str] = ()) -> str:
     """The command that looks for what a fit misses.
 
     Parameters
     ----------
     words : of the fit, without the program's name
+    others : records of the fit beside its first one, as they were typed; one record is refined at a time
 
     Examples
     --------
     >>> refining(["fit", "run1.csv", "--inertia", "3.16", "--effects", "gravity", "--out", "found"])
     'jaxbacklash refine run1.csv --inertia 3.16'
+    >>> refining(["fit", "run1.csv", "run2.csv", "--heldout", "run3.csv"], ["run2.csv"])
+    'jaxbacklash refine run1.csv --heldout run3.csv'
     """
+    words = list(words)
+    for one in others:
+        places = [k for k, word in enumerate(words) if str(Path(word)) == one and words[k - 1] != "--heldout"]
+        if places:
+            del words[places[-1]]
     kept, left = [], 0
     for word in words[1:]:
         if left:

@@ -13,6 +13,12 @@ from .units import UNITS, known_unit
 PAIR = re.compile(r"""\s*(?P<name>[^=,"']*?)\s*=\s*(?:"(?P<double>[^"]*)"|'(?P<single>[^']*)'|(?P<plain>[^,]*))\s*(?:,|$)""")
 """One pair and the comma behind it; a quote counts where the value begins with it."""
 
+EXAMPLES = {"--columns": "x=NAME_OF_A_COLUMN", "--unit": "x=deg", "--scale": "x=0.00153"}
+
+
+def _wanted(option: str) -> str:
+    return f"pairs such as {EXAMPLES.get(option, 'x=VALUE')} separated by commas"
+
 
 def _pairs(text: str, option: str, *, commas_in_values: bool = False) -> list[tuple[str, str]]:
     """(name, value) in the order given; ``commas_in_values`` joins what has no "=" to the value before it."""
@@ -23,18 +29,18 @@ def _pairs(text: str, option: str, *, commas_in_values: bool = False) -> list[tu
         if match is None:
             part, _, _ = text[at:].partition(",")
             if not (commas_in_values and pairs and part.strip() and '"' not in part):
-                raise wrong(option, f'"{part.strip()}"', "pairs such as x=VALUE separated by commas")
+                raise wrong(option, f'"{part.strip()}"', _wanted(option))
             name, value = pairs.pop()
             pairs.append((name, f"{value},{part.rstrip()}"))
             at += len(part) + 1
             continue
         value = next(match[kind] for kind in ("double", "single", "plain") if match[kind] is not None).strip()
         if not (match["name"] and value):
-            raise wrong(option, f'"{match[0].strip(" ,")}"', "pairs such as x=VALUE separated by commas")
+            raise wrong(option, f'"{match[0].strip(" ,")}"', _wanted(option))
         pairs.append((match["name"], value))
         at = match.end()
     if not pairs:
-        raise wrong(option, f'"{text}"', "pairs such as x=VALUE separated by commas")
+        raise wrong(option, f'"{text}"', _wanted(option))
     return pairs
 
 
