@@ -28,8 +28,6 @@ from .friction_homotopy import sliding_speeds
 from .settings import BETWEEN, CLEARLY, EXPLAINED, FURTHER, JOINED, LAST, LOOSE, NEAR
 from .setup import first_guess
 
-GROWING = tuple(LOOSE * 3.0**step for step in range(5))
-"""Weights of the ties of a score where one side of a drive is not seen, each begun where the last one ended."""
 kept_residuals = kept_jit(residuals)
 
 
@@ -178,7 +176,7 @@ def _on_the_right_side(still: Problem, begin: Unknowns, solution: Minimum, how: 
         if 2.0 * float(solution.stats["cost"]) < EXPLAINED * freedom(still, tied=True):
             break
         at = begin
-        for tie in GROWING:
+        for tie in np.geomspace(LOOSE, JOINED, 5):
             at = minimise(with_friction_width(tied(still, tie), speeds, at), at, how).value
         other = minimise(still, at, how)
         solution = min(solution, other, key=lambda m: float(np.nan_to_num(m.stats["cost"], nan=np.inf)))
