@@ -8,7 +8,7 @@ import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.fitting.counts import count_of, few_counts
-from jaxbacklash.fitting.wide_play import wide_play
+from jaxbacklash.records.findings.wide_play import wide_play
 
 from .independent.generator import measure, simulate_truth
 from .independent.rigs import Rig, make_excitation

@@ -21,9 +21,9 @@ from ..fitting.result import Fit
 from ..fitting.score import Score
 from ..fitting.search import silent
 from ..fitting.setup import base_system, free_names
-from ..fitting.wide_play import wide_play
 from ..precision import require_double_precision
 from ..records import Record, oriented
+from ..records.findings.wide_play import wide_play
 from ..records.force import tell_way
 from ..records.prescribed import require_prescribed
 from ..records.relative_motion import check_answers

@@ -11,6 +11,7 @@ import numpy as np
 from ..frames import dataframe, known
 from ..parameters import channel_unit
 from ..records import Record
+from ..records.findings.wide_play import wide_play
 from ..regression.equation_error import Start
 from ..shooting.lengths import SCORE_WINDOW
 from ..shooting.problem import Problem, Unknowns
@@ -20,7 +21,6 @@ from .chance import beyond_chance, explains, near_noise
 from .counts import few_counts
 from .estimates import Estimate, line
 from .score import Score, error_in_words
-from .wide_play import wide_play
 
 WITHOUT_KT = "no --kt was given: inertias, stiffness, damping and torques are per N m/A of the motor"
 """What is said of a drive whose current stands for its torque."""

@@ -1,17 +1,28 @@
 """A play too wide for a loose joint: what is said of a fit whose angles may have been degrees that were taken for radians.
 
-The reader asks about a motion of more than a radian (`records.findings.quantities`). Degrees that stay below it pass there, and
+The reader asks about a motion of more than a radian (`quantities`). Degrees that stay below it pass there, and
 are known by the play that comes out.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from math import degrees
-
-from .counts import Fitted
+from typing import Any, Protocol
 
 WIDE_RAD = 0.5
 """Play above which it is said: 29 degrees. The loosest joints that the package was tried on have a few degrees."""
+
+
+class Fitted(Protocol):
+    """What is asked of a fit: its parameters by name, its records, and whether its play is a length."""
+
+    @property
+    def parameters(self) -> Mapping[str, Any]: ...
+    @property
+    def records(self) -> Sequence[Any]: ...
+    @property
+    def translational(self) -> bool: ...
 
 
 def wide_play(fit: Fitted) -> str:
