@@ -45,7 +45,7 @@ points = jb.dynamics.stroboscopic(system, force, points=100 if tiny else 4000)
 # %%
 figure, ax = plt.subplots(figsize=(6, 4), layout="constrained")
 ax.plot(points.z, points.dz, ".", ms=2)
-ax.set(xlabel="p", ylabel="p'", title="CASE 1 once a period, 1/alpha = 2")
+ax.set(xlabel="p [half plays]", ylabel="p' [half plays per unit of tau]", title="CASE 1 once a period, 1/alpha = 2")
 plt.show()
 
 # %% [markdown]

@@ -19,7 +19,9 @@ PERIODS = 6
 PERIOD_COLOURS = ["#8a8f98", "#a32c0e", "#dcecf7", "#9cc9e8", "#2b83c6", "#0f9d78", "#8ccf6a", "#f1d33c", "#d9a01a"]
 PERIOD_NAMES = ["unresolved", "chaotic", *(str(T) for T in range(1, PERIODS + 1)), f"over {PERIODS}"]
 BASINS = [MEASURED, MODEL, HELDOUT, "#9467bd", "#e3c130", "#5b3a1e", "#d977a8", "#4a4f57"]
-LABELS = {"inverse_alpha": "1/α", "zeta": "ζ", "Omega": "Ω"}
+LABELS = {
+    "inverse_alpha": "1/α", "zeta": "ζ", "Omega": "Ω", "drive.amplitude": "drive amplitude", "drive.frequency": "drive frequency",
+}  # fmt: skip
 
 
 def axis_label(name: str, unit: str | None) -> str:
@@ -101,8 +103,8 @@ def exponent_curve(
     wide = np.nan_to_num(2.0 * stderr)
     top.fill_between(x, exponent - wide, exponent + wide, color=MODEL, alpha=0.25, lw=0, label="±2 standard errors")
     top.plot(x, exponent, color=MODEL, lw=0.7)
-    top.plot(x, np.where(exponent > wide, exponent, np.nan), ".", color=MODEL, ms=4.0, mew=0, label="chaotic: above zero")
-    top.plot(x, np.where(exponent <= wide, exponent, np.nan), ".", color=MEASURED, ms=4.0, mew=0, label="not above zero")
+    top.plot(x, np.where(exponent > wide, exponent, np.nan), "o", color=MODEL, ms=4.0, mew=0, label="chaotic: above zero")
+    top.plot(x, np.where(exponent <= wide, exponent, np.nan), "v", color=MEASURED, ms=4.5, mew=0, label="not above zero")
     top.set(ylabel=with_unit("largest exponent", exponent_unit), xlim=(x.min(), x.max()))
     top.set_title(title, loc="left")
     legend_above(axes)

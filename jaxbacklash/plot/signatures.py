@@ -104,7 +104,9 @@ def play_likelihood(
     if len(axes) > 1:
         _each_level(axes[0], found, plays)
     lower.fill_between(plays, 0.0, found.density, color=HELDOUT, lw=0, alpha=0.8)
-    lower.set(ylabel="probability density", xlabel="total play [deg]", ylim=(0.0, 1.15 * float(found.density.max())))
+    lower.set(
+        ylabel="probability density\nof its logarithm", xlabel="total play [deg]", ylim=(0.0, 1.15 * float(found.density.max()))
+    )
     lower.set_title(f"all levels together: {found.bits:.1f} bit", loc="left")
     for one in axes:
         if truth is not None:

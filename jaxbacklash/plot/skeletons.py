@@ -121,7 +121,7 @@ def skeleton(found: Skeletons, *, ax: Where = None) -> list[Axes]:
     ax.axhline(0.0, color=ink(ax), lw=0.5)
     ax.set(xlabel=with_unit("amplitude of z", unit), ylabel=with_unit("f_s = A ω₀²", f"{unit}/s^2"), xlim=(0.0, None))
     in_degrees(ax, "top", unit)
-    ax.legend(loc="lower right")
+    legend_above(axes, all_panels=True)  # the curve may go through every corner but one, and that is the play's
     return axes
 
 

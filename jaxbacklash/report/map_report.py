@@ -36,7 +36,8 @@ def map_report(map_: Any, result: dict[str, Any], sentence: str, path: Path) -> 
                 to_svg(drawn),
                 "map",
                 "The exponent is the mean growth rate of a small difference, per unit of dimensionless time. The period counts "
-                "periods of the drive. Grey cells neither return within the kept samples nor grow by three error bars.",
+                "periods of the drive. Grey cells neither return within the kept samples nor grow by three error bars. 1/α is "
+                "k_0 x_0 / A, backlash over force; ζ the damping ratio; Ω the drive's frequency over that of the contact.",
             )
         )
     at, note = _cut(map_, names[1:])
