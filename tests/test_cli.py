@@ -62,7 +62,7 @@ def test_a_bad_record_ends_with_code_2(call, tmp_path, write, fragments):
 MISTAKES = {
     "no such command": (["fitt", "rec.csv"], "fitt"),
     "no such option": (["fit", "rec.csv", "--inertai", "3"], "--inertai"),
-    "no record": (["fit"], "records"),
+    "no record": (["fit"], "RECORDS is missing"),
     "inertia not a number": (["fit", "rec.csv", "--inertia", "heavy"], "--inertia"),
     "inertia negative": (["fit", "rec.csv", "--inertia", "-3"], "--inertia -3"),
     "inertia zero": (["fit", "rec.csv", "--inertia", "0"], "positive"),

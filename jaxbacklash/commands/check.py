@@ -26,7 +26,7 @@ from .common import json_text
 
 NEAR = 5.0
 """Standard errors within which a fitted value must lie of the truth that made the shipped record."""
-EXTRAS = ("io", "sweep", "frames", "notebooks", "studio")
+EXTRAS = ("io", "sweep", "frames", "notebooks", "studio", "mujoco")
 """What a user may have installed beside the package."""
 
 

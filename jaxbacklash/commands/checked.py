@@ -16,6 +16,7 @@ SUMMARIES = {
     "lost-motion": "Read the play of a slow record, in which nothing swings",
     "chaos": "Say whether a measured series is chaotic, and how much",
     "simulate": "Write what a measurement of a model would look like",
+    "export": "Write a model for another simulator, MuJoCo or Modelica",
     "map": "Map where a joint is chaotic, over play and damping",
     "studio": "Do all of it at a page in the browser, on this machine",
     "demo": "Find what is hidden in the record that ships with it",
