@@ -1,6 +1,7 @@
 """Drives with an encoder on the motor alone, or on the link alone: the other side is found by what it does through the joint."""
 
 import json
+from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -46,6 +47,18 @@ def test_the_play_is_found_from_the_motor_alone(seed):
     assert set(found) == set(NAMES)
     assert max(abs(e) for e in found.values()) < 4.0
     assert fit.parameters["backlash"].stderr < 3e-4 * rig.backlash
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1002, 1005])
+def test_the_link_alone_tells_the_truth_or_that_the_motor_was_not_found(seed):
+    rig, _, record = rig_and_record(seed, "link", 8.0)
+    fit = None
+    with suppress(jb.NoAnswer):
+        fit = jb.fit(record, starts=1)
+    if fit is not None:
+        found = errors(fit, {name: getattr(rig, name) for name in NAMES})
+        assert max(abs(e) for e in found.values()) < 4.0
 
 
 @pytest.mark.slow
