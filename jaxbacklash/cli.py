@@ -303,7 +303,7 @@ def simulate(
     )  # fmt: skip
 
 
-@app.command(cls=Checked, epilog="Example: jaxbacklash export fit1/model.toml --to mjcf --out joint.xml")
+@app.command(cls=Checked, epilog="Example: jaxbacklash export drive1/model.toml --to mjcf --out joint.xml")
 def export(
     model: Annotated[Path, typer.Argument(help="A model file (TOML)")],
     to: Annotated[str, typer.Option(help="mjcf (MuJoCo) or modelica")],

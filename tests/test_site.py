@@ -16,6 +16,7 @@ import typer.main
 
 import jaxbacklash as jb
 from jaxbacklash.cli import app
+from jaxbacklash.model_file import dump_model
 from tests.in_process import call
 from tests.test_examples import public
 from website import catalogue, commands, paper
@@ -85,6 +86,9 @@ def files(folder: Path) -> None:
     for name, head, rows in (("counts4", "t,x,z", [t, step * np.round(x / step), step * np.round(z / step)]),
                              ("notime", "x,z", [x, z]), ("laser", "t,intensity", [t, z])):  # fmt: skip
         np.savetxt(folder / f"{name}.csv", np.column_stack(rows), delimiter=",", header=head, comments="", fmt="%.7f")
+    (folder / "drive1").mkdir()
+    drive = jb.drive(4e-5, 9e-5, 50.0, inertia=0.05, backlash=0.0126, stiffness=860.0, damping=0.7)
+    (folder / "drive1" / "model.toml").write_text(dump_model(drive), encoding="utf-8")
     slow = next(block for kind, block in blocks("how-to/lost-motion") if kind == "python" and "slow1.csv" in block)
     with contextlib.chdir(folder):
         exec(slow, {})  # the page makes it itself; others only name it
