@@ -38,7 +38,12 @@ def test_only_what_is_in_the_model_or_judged_is_asked(builder):
 
 
 @pytest.mark.parametrize(
-    "names", [("coulomb_joint",), ("coulomb_ground", "gravity"), pytest.param(("lugre", "torque_ripple"), marks=pytest.mark.slow)]
+    "names",
+    [
+        ("coulomb_joint",),
+        pytest.param(("coulomb_ground", "gravity"), marks=pytest.mark.slow),
+        pytest.param(("lugre", "torque_ripple"), marks=pytest.mark.slow),
+    ],
 )
 def test_derivatives_are_those_of_all_laws(builder, monkeypatch, names):
     effects = {name: builder.laws[name].guesses(builder.base)[0] for name in names}

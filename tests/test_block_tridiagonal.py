@@ -155,3 +155,25 @@ def test_what_moves_nothing_is_not_sent_anywhere_by_the_rounding_of_its_slope(da
     assert abs(local[dead]) < 1e-5
     np.testing.assert_allclose(np.delete(local, dead), exact[: n - 1], rtol=1e-8)
     np.testing.assert_allclose(found.theta, exact[n - 1 :], rtol=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_sum_that_alone_is_determined_sends_no_step_uphill(seed):
+    """Two parameters of which only the sum shows: rounding sends both far along the difference, up to a bound and no further."""
+    rng = np.random.default_rng(seed)
+    rows = rng.standard_normal((30, 3))
+    rows = np.column_stack([rows, rows[:, 0] * rng.uniform(0.5, 2.0)])
+    wanted = rng.standard_normal(4)
+    slope = -rows.T @ (rows @ wanted) + 1e-3 * rng.standard_normal(4)
+    blocks = Blocks(
+        np.ones((1, 1, 1)), np.zeros((1, 1, 1)), np.zeros((1, 1, 4)), rows.T @ rows, np.zeros((1, 1)), slope, np.zeros(()),
+        np.ones((1, 1)), np.ones(4),
+    )  # fmt: skip
+    least, largest = -rng.uniform(0.1, 5.0, 4), rng.uniform(0.1, 5.0, 4)
+    found = solve(blocks, jnp.asarray(0.0), between=(least, largest))
+    theta = np.asarray(found.theta)
+    assert np.all(theta >= least - 1e-12)
+    assert np.all(theta <= largest + 1e-12)
+    exact = optimize.lsq_linear(rows, np.linalg.lstsq(rows.T, -slope)[0], (least, largest)).x
+    best = -(slope @ exact + 0.5 * exact @ (rows.T @ rows) @ exact)
+    assert float(found.promise) == pytest.approx(best, rel=0.02)

@@ -28,6 +28,7 @@ def fitted(own, name, **values):
     return own.fit_model({name: catalogue()[name](**values)})
 
 
+@pytest.mark.slow
 def test_what_it_promises_is_what_the_joint_shows():
     hidden = {"cubic_stiffness": {"k3": 3e6}}
     own = fitter_of(hidden, make_excitation(np.random.default_rng(1), "multisine", 8.0, scale=0.7), 8.0)

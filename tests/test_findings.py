@@ -150,6 +150,7 @@ def test_what_dies_away_is_no_driven_motion(seed):
     assert "driven" not in {one.kind for one in found}
 
 
+@pytest.mark.slow
 @needs_numba
 def test_a_link_alone_is_asked_about_where_it_is_driven_and_only_there():
     driven = decaying = 0

@@ -203,6 +203,7 @@ def test_an_axis_without_a_joint_rubs_on_the_ground():
         assert found.fit.parameters[name].value == pytest.approx(value, abs=4.0 * found.fit.parameters[name].stderr)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sigma", [0.0, 3e-5])
 def test_an_input_as_good_as_exact_has_no_samples_to_count(sigma):
     """Its rows leave nothing: counted as samples they made a right model look better than its noise, and the noise too large."""

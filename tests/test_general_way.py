@@ -79,6 +79,7 @@ def harmonic(amplitude, frequency):
     return drive, motions.ModulatedSine(amplitude, frequency, depth=0.0, phase=0.5 * np.pi, ramp=0.0)
 
 
+@pytest.mark.slow
 def test_a_nonlinear_joint_is_that_of_scipy():
     """Samples once a period over twenty, and the exponent against two motions of scipy's that begin a little apart."""
     drive, base = harmonic(0.05, 3.0)

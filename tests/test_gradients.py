@@ -18,6 +18,8 @@ from jaxbacklash.simulation import as_record
 from .laws import FORMS, LAWS, MOTOR_LAWS
 
 EVERY = LAWS | FORMS
+USUAL = ("gravity", "gap_drift", "dahl", "sensor_delay", "clock_drift")
+"""Laws whose residual the default suite looks at: one by place, one that moves the edges, one with a state, two that measure."""
 HALF = 0.012
 # (z, dz): in the gap, in contact on each side, and close to each edge from both sides.
 POINTS = {
@@ -102,7 +104,7 @@ def record():
     return clean.replace(**noisy)
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", [n if n in USUAL else pytest.param(n, marks=pytest.mark.slow) for n in EVERY])
 def test_shooting_residual(name, record):
     """The Jacobian blocks of the multiple-shooting residual, every parameter, windows that cross both edges."""
     windows, _ = cut([record], 0.1)

@@ -39,7 +39,7 @@ def test_a_shot_costs_half_the_sum_of_its_squares():
     assert float(shot.cost) == pytest.approx(sum(0.5 * np.sum(np.asarray(r) ** 2) for r in found), rel=1e-9)
 
 
-@pytest.mark.parametrize("name", [None, "dahl"])
+@pytest.mark.parametrize("name", [None, pytest.param("dahl", marks=pytest.mark.slow)])
 def test_blocks_are_those_of_the_rows_that_optimistix_is_handed(name):
     """J^T r and half of r^T r, by differentiation of the rows as a whole."""
     bench, effects = joint(name, 2, 2.0)

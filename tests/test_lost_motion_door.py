@@ -90,6 +90,7 @@ def test_a_record_of_other_channels_is_refused(call, tmp_path):
     assert "two positions" in sentence(err)
 
 
+@pytest.mark.slow
 def test_look_and_fit_name_the_command(call, slow, tmp_path):
     code, out, _ = call("look", slow)
     assert code == 0

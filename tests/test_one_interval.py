@@ -14,6 +14,7 @@ def refined_base(record, inertia):
     return _Judge(own, None, "joint", False, False, None)(own.fit_model({}))
 
 
+@pytest.mark.slow
 def test_fit_and_refine_give_one_interval():
     record, rig, _, _ = hidden(None, "multisine", 7, seconds=8.0)
     fitted = jb.fit(record, inertia=rig.inertia, starts=1)

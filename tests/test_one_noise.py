@@ -59,6 +59,7 @@ def test_fit_and_refine_find_one_noise_under_a_force_of_noise(shaken_twice):
         assert refined.parameters[name].stderr == pytest.approx(one.stderr, rel=0.05)
 
 
+@pytest.mark.slow
 def test_compare_tells_of_an_incomplete_model_what_refine_did(shaken_twice, tmp_path):
     """The noise was found beside a model that explains; one that does not is as wrong for `compare` as in the table."""
     record, heldout = shaken_twice
@@ -69,6 +70,7 @@ def test_compare_tells_of_an_incomplete_model_what_refine_did(shaken_twice, tmp_
     told(refined, record, heldout, tmp_path)
 
 
+@pytest.mark.slow
 def test_compare_tells_what_refine_did_of_windows_that_no_model_joins(tmp_path):
     record, rig, _, _ = hidden("cubic_stiffness", "multisine", 7, seconds=8.0)
     heldout, _, _, _ = hidden("cubic_stiffness", "chirp", 7, seconds=8.0)

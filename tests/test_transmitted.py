@@ -98,6 +98,7 @@ def test_a_force_measured_the_other_way_round_is_turned():
     assert oriented(elastic) is elastic
 
 
+@pytest.mark.slow
 def test_the_true_model_predicts_the_referee_to_its_noise():
     found = jb.compare(model(), record_of(3), translational=True)
     assert found.score.rms == pytest.approx(1.0, abs=0.2)
@@ -140,6 +141,7 @@ def test_a_contact_between_the_samples_of_a_link_that_is_not_seen():
     assert found.parameters["coulomb_ground.Tc"].value == pytest.approx(30.0, rel=0.05)
 
 
+@pytest.mark.slow
 def test_a_link_that_is_not_seen_has_no_new_start_in_every_window():
     record = record_of()
     system, names, _ = base_system(record, "joint", None)  # without the friction that holds the link

@@ -82,6 +82,7 @@ def test_a_right_model_asks_for_none(kind, times):
             assert unnamed(own, model) is None
 
 
+@pytest.mark.slow
 def test_friction_that_the_model_holds_is_no_unnamed_torque():
     record, rig, _, _ = hidden("coulomb_joint", "chirp", 4)
     own, model = fitted(record, rig.inertia, "coulomb_joint")

@@ -51,9 +51,11 @@ class ForceTest:
         torques = [torque - less for torque in own_torques(shapes, self.system, self.along, begun)]
         found = [self.fall(torque) for torque in torques]
         best = max(range(len(shapes)), key=lambda k: found[k][0])
-        while found[best][0] > 0.0 and not self._answer(self._at_edges(torques[best]), found[best][1]) < 0.0:
-            # Far beyond the shares that were tried the cost is no parabola any more.
-            found[best] = 0.0, 1.0
+        while found[best][0] > 0.0:
+            truly = self._answer(self._at_edges(torques[best]), found[best][1])
+            if truly < 0.0:
+                break
+            found[best] = bent(*found[best], truly)
             best = max(range(len(shapes)), key=lambda k: found[k][0])
         gain, size = found[best]
         return gain, shapes[best].scaled(size) if gain > 0.0 and not instead else shapes[best], best
@@ -92,3 +94,16 @@ class ForceTest:
         measured = np.asarray(self.problem.windows.measured) - share * shift
         problem = eqx.tree_at(lambda p: p.windows.measured, self.problem, measured)
         return answered(problem, self.unknowns)[0] - self.still
+
+
+def bent(gain: float, size: float, truly: float) -> tuple[float, float]:
+    """Gain and size anew where the cost has risen by ``truly`` at a size far beyond the shares that were tried.
+
+    They are those of the parabola of the same slope through that point, which halves both at least; nothing where the motion ran
+    away.
+    """
+    if not np.isfinite(truly):
+        return 0.0, 1.0
+    slope = -gain / size
+    curvature = 2.0 * (truly - slope * size) / size**2
+    return slope**2 / curvature, -slope / curvature

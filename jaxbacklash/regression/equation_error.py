@@ -63,6 +63,8 @@ def estimate(
     effects : effects of the model; those without internal states whose torque vanishes with one strength take part
     """
     weak = _WeakForm(record)
+    if inertia is None and spring:
+        inertia = weak.mass()
     strengths = [(effect, name) for effect in effects if (name := _strength(effect)) is not None]
 
     damping_column = weak.damping()
@@ -175,6 +177,18 @@ class _WeakForm(Averaged):
 
     def damping(self) -> np.ndarray:
         return -self.average(self.z, 1)
+
+    def mass(self, knots: int = 12) -> float:
+        """The inertia beside a restoring force of any shape, broken lines over quantiles of z, and linear damping (Masri and
+        Caughey, Journal of Applied Mechanics 46 (1979) 433): a straight spring in place of one that hardens bends it even below
+        nothing."""
+        places = np.unique(np.quantile(self.z, np.linspace(0.0, 1.0, knots)))
+        shapes = self.average(np.stack([np.interp(self.z, places, unit) for unit in np.eye(places.size)]))
+        matrix = np.column_stack([self.acceleration, self.damping(), *shapes])
+        scale = np.linalg.norm(matrix, axis=0)
+        scale[scale == 0.0] = 1.0
+        found = float(np.linalg.lstsq(matrix / scale, self.force, rcond=None)[0][0] / scale[0])
+        return max(found, 1e-9)
 
     def torque(self, effect: AbstractEffect, half_play: float) -> np.ndarray:
         """Torque of an effect on the measured motion under the bump; its speeds are smoothed."""

@@ -8,16 +8,15 @@ from __future__ import annotations
 from typing import Any
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 
 from .block_tridiagonal import eliminate
 from .multiple_shooting import Blocks
 
 Array = Any
-
-
-ROUNDS = 3
-"""How often it is looked which parameters go beyond their bounds, once some are held there."""
+MOST_ROUNDS = 50
+"""How often a bound is met or left on the way to a step at most; as far as it has come the step lowers the cost."""
 DEAD = 1e-7
 """Curvature along an unknown of a window below which it moves nothing, as a share of what is usual along the same in others."""
 
@@ -92,15 +91,35 @@ def _geometric_mean(values: Array, where: Array) -> Array:
 
 
 def _solve_between(matrix: Array, right: Array, least: Array, largest: Array) -> Array:
-    """The solution with some unknowns held at what bounds them, found by holding those that go beyond, in a few rounds."""
-    held, theta = jnp.zeros(right.shape, bool), _solve_scaled(matrix, right)
-    for _ in range(ROUNDS):
-        within = jnp.clip(theta, least, largest)
-        held = held | (theta != within)
-        at = jnp.where(held, within, 0.0)
+    """The solution within bounds between which no step lies: an active set begun at no step (Nocedal and Wright, Numerical
+    Optimization, 2nd edition, algorithm 16.3).
+
+    The way to the solution is followed to the first bound, and the unknown that meets it is held there; one that would go back
+    inside is let go. So the cost falls on the whole way. Clipping would send unknowns whose sum alone is determined anywhere.
+    """
+    size = jnp.sqrt(jnp.maximum(jnp.diagonal(matrix), 1e-300))
+
+    def unfinished(state: tuple[Array, Array, Array, Array]) -> Array:
+        return ~state[2] & (state[3] < MOST_ROUNDS)
+
+    def nearer(state: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array, Array]:
+        theta, held, _, rounds = state
         free = jnp.where(held[:, None] | held[None, :], 0.0, matrix) + jnp.diag(jnp.where(held, 1.0, 0.0))
-        theta = jnp.where(held, at, _solve_scaled(free, jnp.where(held, 0.0, right - matrix @ at)))
-    return jnp.clip(theta, least, largest)
+        wanted = _solve_scaled(free, jnp.where(held, 0.0, right - matrix @ jnp.where(held, theta, 0.0)))
+        way = jnp.where(held | ~jnp.isfinite(wanted), 0.0, wanted - theta)
+        end = jnp.where(way > 0.0, largest, least)
+        reach = jnp.where(way != 0.0, jnp.maximum((end - theta) / jnp.where(way != 0.0, way, 1.0), 0.0), jnp.inf)
+        share = jnp.minimum(1.0, jnp.min(reach))
+        met = (reach <= share) & (share < 1.0)
+        theta = jnp.where(met, end, theta + share * way)
+        down = (right - matrix @ theta) / size
+        inward = jnp.where(held & (largest > least), jnp.where(theta >= largest, -down, down), 0.0)
+        worst = (jnp.arange(theta.size) == jnp.argmax(inward)) & (inward > 1e-9 * jnp.max(jnp.abs(right / size)))
+        back = worst & (share >= 1.0)
+        return theta, (held | met) & ~back, (share >= 1.0) & ~jnp.any(back), rounds + 1
+
+    begin = jnp.zeros(right.shape), jnp.zeros(right.shape, bool), jnp.asarray(False), jnp.asarray(0)
+    return jax.lax.while_loop(unfinished, nearer, begin)[0]
 
 
 def _solve_scaled(matrix: Array, right: Array) -> Array:
