@@ -259,6 +259,7 @@ def test_what_was_wrong_before_is_not_said_beside_new_work(session):
         act()
         assert (session.message, session.bad) == ("", False)
         session.stop()
+        assert (session.message, session.bad) == ("stopped", False)  # even of what had not begun
         assert session.worker.wait(LONG)
 
 

@@ -155,9 +155,12 @@ class Session:
             self._say("")
 
     def stop(self) -> None:
-        """Stop what is being computed, and forget what waits."""
+        """Stop what is being computed, and forget what waits: it is said even of what had not begun."""
         with self._lock:
+            busy = self.worker.busy
             self._halt()
+            if busy:
+                self._say("stopped")
 
     def judge(self) -> None:
         """Find out where the model looked at fails and what it lacks, as far as that is not known."""
