@@ -8,8 +8,9 @@ from typing import Any
 
 from ..causes import Cause
 from ..fitting import Fit, Score, measures, percent
+from ..fitting.chance import explains
 from ..fitting.estimates import line
-from ..fitting.result import DOUBTED, at_most, doubt
+from ..fitting.result import DOUBTED, at_most
 from ..frames import dataframe, known
 from ..parameters import channel_unit
 from ..showing import Shown
@@ -126,7 +127,8 @@ def text(refinement: Refinement) -> str:
 def doubted(refinement: Refinement) -> str:
     """What is to stand beside the standard errors of the model kept, in place of intervals: nothing where it is complete and
     leaves only noise."""
-    return doubt(refinement.fit) if refinement.verdict.complete else DOUBTED
+    fit = refinement.fit
+    return "" if refinement.verdict.complete and explains(fit.scores, fit.system) else DOUBTED
 
 
 def noise_lines(fit: Fit) -> list[str]:

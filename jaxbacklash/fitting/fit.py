@@ -23,7 +23,7 @@ from ..regression.equation_error import Start
 from ..shooting.lengths import HELD_WINDOW, PANELS, longest_panel, score_window, shooting_window
 from ..shooting.windows import Layout, Windows, crossing_time, cut
 from ..system import System
-from .chance import explains
+from .chance import explains, joined
 from .estimates import UNDETERMINED, Estimate, inflation, judge
 from .hard import contact_samples, harder, most_play, travel_in_contact
 from .left_over import predict, settle_noise, why_open
@@ -158,7 +158,7 @@ def fit(
     per_inertia = inertia is None and chosen[0].kind not in ABSOLUTE
     estimates = judge(
         fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational, covariance=covariance,
-        explained=explains(scored, fitted),
+        explained=explains(scored, fitted) and joined(found.tied, fitted),
     )  # fmt: skip
     if not sticks_and_slips(system) and contact_samples(fitted, chosen[0].dt) < SHORTEST:
         estimates |= _between_samples(estimates, fitted, chosen, missed=scored[0].rms > EXPLAINED)

@@ -17,7 +17,7 @@ from ..shooting.lengths import SCORE_WINDOW
 from ..shooting.problem import Problem, Unknowns
 from ..showing import Shown
 from ..system import System
-from .chance import beyond_chance, explains, near_noise
+from .chance import beyond_chance, explains, joined, near_noise
 from .counts import few_counts
 from .estimates import Estimate, line
 from .score import Score, error_in_words
@@ -90,8 +90,9 @@ class Fit(Shown):
 
     @property
     def adequate(self) -> bool:
-        """True when what the model leaves is noise: the median window within a tenth of it, all windows within three tenths."""
-        return near_noise(self.scores)
+        """True when what the model leaves is noise: the median window within a tenth of it, all windows within three tenths, and
+        the windows join into one motion."""
+        return near_noise(self.scores) and joined(self.tied, self.system)
 
     def __str__(self) -> str:
         return text(self)
@@ -130,7 +131,7 @@ class Fit(Shown):
 
 def doubt(fit: Fit) -> str:
     """What is to stand beside the standard errors of a fit in place of intervals: nothing where it leaves only noise."""
-    return "" if explains(fit.scores, fit.system) else DOUBTED
+    return "" if explains(fit.scores, fit.system) and joined(fit.tied, fit.system) else DOUBTED
 
 
 def text(fit: Fit, causes: Sequence[Named] = ()) -> str:
@@ -211,6 +212,12 @@ def verdict_text(fit: Fit, causes: Sequence[Named] = ()) -> str:
         )
     elif fit.adequate:
         sentence = f"The model explains the record to its noise: {error_in_words(worst)}, median window {worst.median:.2f}."
+    elif near_noise(fit.scores):
+        sentence = (
+            f"The model misses something: each window, begun anew, is missed by {error_in_words(worst)} (median window "
+            f"{worst.median:.2f}), but the windows do not join into one motion, so a torque is left out; standard errors "
+            "hold only if the model is right, and no intervals are given."
+        )
     else:
         sentence = (
             f"The model misses something: its error is {error_in_words(worst)}, in the median window {worst.median:.3g} times; "
