@@ -22,12 +22,14 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..mechanics import Drive
+from ..solvers.plain_panels import PlainMap
 from ..solvers.substeps import run_panels
 from .active_laws import rebuild_active
 from .chunks import by_chunks
 from .input_spline import input_tangents, lags, local_coefficients, spline_input
+from .panel_tangents import drive, plain_of
 from .problem import Problem, Unknowns
-from .tangents import drive, rows, trajectories
+from .tangents import rows, trajectories
 from .windows import Windows
 
 Array = Any
@@ -210,7 +212,9 @@ def linearise(problem: Problem, unknowns: Unknowns, shot: Shot) -> Blocks:
     """
     n, q, m = unknowns.starts.shape[0], unknowns.theta.shape[0], problem.windows.intervals
     lead = _windows(problem, unknowns), eqx.tree_at(lambda s: (s.cost, s.predicted), shot, (None, None))
-    met = by_chunks(_meet, (_bare(problem), unknowns.theta), lead, problem.windows.used)
+    bare, theta = _bare(problem), unknowns.theta
+    plain = plain_of(bare.windows, rebuild_active(problem), theta)
+    met = by_chunks(_meet, (bare, theta, plain), lead, problem.windows.used)
     blocks = assemble(met.gram, met.slope, met.end_rows, shot.tie, met.tie_weight, met.seen, n, m, q, shot.cost)
     return _ridge(problem, unknowns, blocks, n)
 
@@ -251,13 +255,14 @@ def per_window(problem: Problem) -> tuple[Array, ...]:
     return w.t0, w.measured, w.weight, w.tie, w.input, w.input_weight, w.force
 
 
-def _meet(shared: tuple[Problem, Array], lead: tuple[Window, Shot]) -> Met:
-    (problem, theta), (own, shot) = shared, lead
+def _meet(shared: tuple[Problem, Array, PlainMap | None], lead: tuple[Window, Shot]) -> Met:
+    (problem, theta, plain), (own, shot) = shared, lead
     problem = eqx.tree_at(per_window, problem, own.data, is_leaf=lambda v: v is None)
     w = problem.windows
     n, q = own.start.shape[1], theta.shape[0]
     basis, lagged = input_tangents(problem, theta, own.local)
-    motion_rows, end_rows = rows(w, rebuild_active(problem), theta, problem.active, shot.states, shot.u, shot.du, basis, lagged)
+    rebuild = rebuild_active(problem)
+    motion_rows, end_rows = rows(w, rebuild, theta, problem.active, plain, shot.states, shot.u, shot.du, basis, lagged)
     tie_weight = tie_weights(problem, n)
     weighted = jnp.concatenate([weighed(motion_rows, w.weight[:, None, :]), weighed(end_rows, tie_weight[:, None, :])], axis=2)
     gram = jnp.einsum("wir,wjr->wij", weighted, weighted)

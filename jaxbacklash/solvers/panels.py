@@ -90,7 +90,7 @@ def rk4(rates: Any, t: Scalar, state: State, h: Scalar, first: State | None = No
     return tuple(s + (h / 6.0) * (a + 2.0 * (b + c) + d) for s, a, b, c, d in zip(state, k1, k2, k3, k4))
 
 
-def _rk4_in_turns(rates: Any, t: Scalar, state: State, h: Scalar, first: State) -> State:
+def rk4_in_turns(rates: Any, t: Scalar, state: State, h: Scalar, first: State) -> State:
     """As `rk4`, with ``rates`` written once beside ``first``."""
 
     def stage(carry: Any, at: Any) -> Any:
@@ -228,7 +228,7 @@ def advance_in_turns(system: Switching, t: Scalar, state: State, drive_at: Any, 
         length = jnp.where(last, rest, jnp.where(crossing < rest, crossing, 0.5 * rest))
         half = 0.5 * length
         side = jnp.where(last, side, edges.side(z + half * (dz + 0.5 * half * ddz), begin + half))
-        state = _rk4_in_turns(lambda s, q: system.rates(t + s, q, drive_at(s), side), begin, state, length, first)
+        state = rk4_in_turns(lambda s, q: system.rates(t + s, q, drive_at(s), side), begin, state, length, first)
         begin = begin + length
         (z, dz), half = relative(state, begin), 0.5 * (h - begin)
         return (state, begin, edges.side(z + half * (dz + 0.5 * half * ddz), begin + half)), None
@@ -250,6 +250,6 @@ def advance_smooth_in_turns(system: Switching, t: Scalar, state: State, drive_at
 
     def step(state: State, begin: Scalar) -> tuple[State, None]:
         rates = lambda s, q: system.rates(t + s, q, drive_at(s))  # noqa: E731
-        return _rk4_in_turns(rates, begin, state, 0.5 * h, rates(begin, state)), None
+        return rk4_in_turns(rates, begin, state, 0.5 * h, rates(begin, state)), None
 
     return jax.lax.scan(step, state, jnp.stack([0.0 * h, 0.5 * h]))[0]

@@ -18,8 +18,9 @@ MANY = 4
 """Laws, some with internal states, above which a panel is advanced in loops."""
 
 
-def one_panel(system: Any, t: Any, state: Any, a: Any, b: Any, h: Any, located: bool) -> Any:
-    """The state one panel of length ``h`` [s] after ``t``, the drive given as ``a`` and ``b`` at the panel's two edges."""
+def course(a: Any, b: Any, h: Any) -> tuple[Any, Cubic]:
+    """The drive over a panel of length ``h`` [s], ``a`` and ``b`` at its edges, as a function of the time since its start; and
+    the base motion alone."""
     base = Cubic.hermite(a.x, a.dx, b.x, b.dx, h)
     force = Cubic.between(a.force, a.dforce, b.force, b.dforce, h)
     # A torque of which no rate is known is held, as a controller holds it.
@@ -28,6 +29,12 @@ def one_panel(system: Any, t: Any, state: Any, a: Any, b: Any, h: Any, located: 
     def drive_at(tau: Any) -> Any:
         return type(a)(base.at(tau), base.slope(tau), force.at(tau), None, a.torque if smooth is None else smooth.at(tau))
 
+    return drive_at, base
+
+
+def one_panel(system: Any, t: Any, state: Any, a: Any, b: Any, h: Any, located: bool) -> Any:
+    """The state one panel of length ``h`` [s] after ``t``, the drive given as ``a`` and ``b`` at the panel's two edges."""
+    drive_at, base = course(a, b, h)
     in_turns = len(state) > system.mechanical and len(system.effects) > MANY
     if located and system.slides:
         dry = advance_dry if system.motor is None else advance_ports
