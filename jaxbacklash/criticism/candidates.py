@@ -3,17 +3,18 @@ r"""Which absent effects would lower the misfit: a score test of all of them at 
 With the information S and the score g of all columns, the joint's and the candidate's, windows marginalised, adding the
 candidate is predicted to lower twice the cost by :math:`g^T S^{-1} g` more than the joint alone would. Parameters that
 shape a law but do not act at its null value are scanned over the law's own guesses; strengths that physics bounds on one
-side count on that side only.
+side count on that side only. The same sensitivities tell which laws promise more together than any does alone.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..fitting.continuation import tied
+from ..fitting.settings import PROMISING
 from ..mechanics import AbstractEffect
 from ..parameters import free_specs, specs, with_values
 from ..regression.spectrum import read_off
@@ -58,7 +59,8 @@ def score_test(builder: ModelBuilder, model: FittedModel, names: Iterable[str]) 
     shapes = [(n, effect) for n in names for effect in shaped(builder, model, n)]
     each = float(np.log(builder.record.samples))
     for group in _groups(model, shapes):
-        for one in _score(builder, model, group):
+        score = _Score(builder, model, group)
+        for one in (score.promise([name])[0] for name in group):
             known = found.get(one.name)
             if known is None or one.gain - each * one.parameters > known.gain - each * known.parameters:
                 found[one.name] = one
@@ -72,7 +74,7 @@ def share_of_rest(model: FittedModel, gain: float) -> float:
 
 def rubs(law: type[AbstractEffect]) -> bool:
     """Whether a law is friction in the joint, dry or one that gives."""
-    return bool(law.states and law.family) or (law.slides and law.port == "joint" and not law.beside)
+    return bool((law.states and law.family) or (law.slides and law.port == "joint" and not law.beside))
 
 
 def shaped(builder: ModelBuilder, model: FittedModel, name: str) -> list[AbstractEffect]:
@@ -94,7 +96,7 @@ def null(effect: AbstractEffect) -> AbstractEffect:
 
 def _groups(model: FittedModel, shapes: list[tuple[str, AbstractEffect]]) -> list[dict[str, AbstractEffect]]:
     """The candidates in groups that fit beside the model's own parameters into one set of columns, one shape of a law in each."""
-    room = width(len(model.free) + max((len(strengths(e)) for _, e in shapes), default=0)) - len(model.free)
+    room = _room(model, shapes)
     groups: list[dict[str, AbstractEffect]] = []
     for name, effect in shapes:
         taken = [sum(len(strengths(e)) for e in group.values()) for group in groups]
@@ -106,28 +108,85 @@ def _groups(model: FittedModel, shapes: list[tuple[str, AbstractEffect]]) -> lis
     return groups
 
 
-def _score(builder: ModelBuilder, model: FittedModel, shapes: dict[str, AbstractEffect]) -> list[Candidate]:
-    """Candidates at these shapes from one set of sensitivities."""
-    columns = [(name, n) for name, effect in shapes.items() for n in strengths(effect)]
-    problem, _ = builder.problem(
-        builder.effects(model), model.system, extra=[f"{name}.{n}" for name, n in columns], shapes=shapes
-    )
-    information, score, scales = builder.sensitivities(tied(problem, model.tie), model.unknowns)
-    q, present = len(model.free), model.value
-    found = []
-    for name in shapes:
-        index = [*range(q), *(q + j for j, (other, _) in enumerate(columns) if other == name)]
+def forward_selection(builder: ModelBuilder, model: FittedModel, candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Candidates that promise more together than any does alone, chosen one after another by the score test of all chosen ones
+    (forward selection), each at its values beside the others. ``gain`` is what each adds to those before it.
+
+    Parameters
+    ----------
+    builder : of the record
+    model : a fitted model
+    candidates : laws without internal states from `score_test`, the most promising first; friction in the joint and a family
+        are chosen once
+
+    Returns
+    -------
+    list of Candidate
+        At least two; none where the others add less than `PROMISING` of what the first brings.
+    """
+    room = _room(model, [(c.name, null(c.effect)) for c in candidates])
+    shapes: dict[str, AbstractEffect] = {}
+    for one in candidates:
+        if sum(len(strengths(e)) for e in (*shapes.values(), one.effect)) <= room:
+            shapes[one.name] = null(one.effect)
+    score = _Score(builder, model, shapes)
+    each, laws = float(np.log(builder.record.samples)), builder.laws
+    chosen: list[Candidate] = []
+    least, before = 0.0, 0.0
+    while True:
+        taken = [c.name for c in chosen]
+        left = [n for n in shapes if n not in taken and not any(_exclude(laws[n], laws[t]) for t in taken)]
+        tried = [score.promise([*taken, n]) for n in left]
+        nets = [t[-1].gain - before - each * t[-1].parameters for t in tried]
+        if not nets or max(nets) <= least:
+            return chosen if len(chosen) > 1 else []
+        best = tried[int(np.argmax(nets))]
+        whole = best[-1].gain
+        gains = [*(c.gain for c in chosen), whole - before]
+        chosen, before = [replace(c, gain=g) for c, g in zip(best, gains)], whole
+        least = max(least, PROMISING * (gains[0] - each * chosen[0].parameters))
+
+
+def _exclude(law: type[AbstractEffect], other: type[AbstractEffect]) -> bool:
+    """Whether a model holds one of two laws at a time."""
+    return (rubs(law) and rubs(other)) or (bool(law.family) and law.family == other.family)
+
+
+def _room(model: FittedModel, shapes: list[tuple[str, AbstractEffect]]) -> int:
+    """How many columns of candidates fit beside the model's own parameters into one set."""
+    return width(len(model.free) + max((len(strengths(e)) for _, e in shapes), default=0)) - len(model.free)
+
+
+class _Score:
+    """The score test of some candidates at these shapes, from one set of sensitivities."""
+
+    def __init__(self, builder: ModelBuilder, model: FittedModel, shapes: dict[str, AbstractEffect]) -> None:
+        self.model, self.shapes = model, shapes
+        self.columns = [(name, n) for name, effect in shapes.items() for n in strengths(effect)]
+        problem, _ = builder.problem(
+            builder.effects(model), model.system, extra=[f"{name}.{n}" for name, n in self.columns], shapes=shapes
+        )
+        self.told = builder.sensitivities(tied(problem, model.tie), model.unknowns)
+
+    def promise(self, names: Sequence[str]) -> list[Candidate]:
+        """Candidates at their values beside one another, each with the gain of all of them together."""
+        information, score, scales = self.told
+        q, present = len(self.model.free), self.model.value
+        index = [*range(q), *(q + j for j, (other, _) in enumerate(self.columns) if other in names)]
         step, gain = _gain(information[np.ix_(index, index)], score[index], q)
         step = step * scales[index]
-        described = specs(shapes[name])
-        moved = {n: described[n].null + size for n, size in zip(strengths(shapes[name]), step[q:])}
-        if not all(described[n].lower <= v <= described[n].upper for n, v in moved.items()):
-            moved = {n: float(np.clip(v, described[n].lower, described[n].upper)) for n, v in moved.items()}
-            gain = 0.0
-        joint = {n: present[n] + float(size) for n, size in zip(model.free, step)}
-        effect = with_values(shapes[name], moved)
-        found.append(Candidate(name, effect, gain / model.deflation, share_of_rest(model, gain), joint))
-    return found
+        own = dict(zip([column for column in self.columns if column[0] in names], step[q:]))
+        joint = {n: present[n] + float(size) for n, size in zip(self.model.free, step)}
+        effects = []
+        for name in names:
+            described = specs(self.shapes[name])
+            moved = {n: described[n].null + own[name, n] for n in strengths(self.shapes[name])}
+            if not all(described[n].lower <= v <= described[n].upper for n, v in moved.items()):
+                moved = {n: float(np.clip(v, described[n].lower, described[n].upper)) for n, v in moved.items()}
+                gain = 0.0
+            effects.append(with_values(self.shapes[name], moved))
+        share = share_of_rest(self.model, gain)
+        return [Candidate(n, e, gain / self.model.deflation, share, joint) for n, e in zip(names, effects)]
 
 
 def _gain(information: np.ndarray, score: np.ndarray, q: int) -> tuple[np.ndarray, float]:

@@ -14,11 +14,11 @@ from dataclasses import replace
 
 from ..fitting.search import silent
 from ..fitting.settings import CLEAR_SHARE, CLOSE, MOST_FITTED, MOST_LAWS, PROMISING, SCATTER, SHARP, TIGHTEST
-from .candidates import Candidate, share_of_rest
+from .candidates import Candidate, forward_selection, share_of_rest
 from .evidence import demanded, leaves_noise, noise_too_large
 from .fitted_model import FittedModel
 from .model_fitter import ExhaustedError, ModelFitter
-from .moves import Neighbour, in_other_forms, with_law, with_simpler_law, without_law
+from .moves import Neighbour, in_other_forms, with_law, with_laws, with_simpler_law, without_law
 from .screening import net_gain, screen
 from .steps import SearchStep
 
@@ -50,6 +50,7 @@ class EvidenceSearch:
         except ExhaustedError:
             self._end_early()
             model = self.path[-1].model
+        budget, self.fitter.budget = self.fitter.budget, math.inf  # what is still to be told of the model kept takes a few more
         model = self.clear(model)
         self._note_ranking()
         model = self.fitter.sharpened(model)
@@ -60,6 +61,7 @@ class EvidenceSearch:
         if noise_too_large(model) and (factor := self.fitter.too_loud(model)) != 1.0:
             self.fitter.quieter(factor)
             self._screened.clear()
+            self.fitter.budget = budget
             return self.run()
         self.level = self.as_likely(model)
         return self.path
@@ -76,14 +78,14 @@ class EvidenceSearch:
         return model
 
     def _end_early(self) -> None:
-        self.fitter.budget = math.inf  # what is still to be told of the model kept takes a few more
+        self.fitter.budget = math.inf
         said = f"the search was ended after {self.fitter.fits} fits: another effect may do as well or better"
         warnings.warn(said, stacklevel=3)
 
     def better_neighbour(self, model: FittedModel) -> FittedModel | None:
         """The best model one move away, None where no move helps: additions first, then fewer laws, then other ones."""
         for move, least in (
-            (self.one_law_more, self.demand), (self.one_law_fewer, -self.demand), (self.another_law, self.demand),
+            (self.more_laws, self.demand), (self.one_law_fewer, -self.demand), (self.another_law, self.demand),
         ):  # fmt: skip
             found: FittedModel | None = None
             for neighbour in move(model):
@@ -127,10 +129,25 @@ class EvidenceSearch:
         """Whether dry friction is in any of some models."""
         return any(self.fitter.laws[n].slides for model in models for n in model.names)
 
-    def one_law_more(self, model: FittedModel) -> Iterator[Neighbour]:
-        """The model with each of the most promising absent laws."""
-        if len(model.names) < MOST_LAWS:
-            yield from self._with_each(model, self.screened(model))
+    def more_laws(self, model: FittedModel) -> Iterator[Neighbour]:
+        """The model with laws that promise more together than any alone, and with each of the most promising absent ones."""
+        if len(model.names) >= MOST_LAWS:
+            return
+        screened, enough = self.screened(model), 0.0
+        for chosen in self._together(model, screened):
+            yield (neighbour := with_laws(self.fitter, model, chosen))
+            if leaves_noise(self.fitter.fitted[neighbour.names]):
+                enough = sum(net_gain(c, self.fitter) for c in chosen)
+        yield from self._with_each(model, screened, enough=enough)
+
+    def _together(self, model: FittedModel, screened: list[Candidate]) -> list[list[Candidate]]:
+        """The set of promising laws that promises more than any of them alone, if there is one."""
+        least = max(self.demand, PROMISING * max((net_gain(c, self.fitter) for c in screened), default=0.0))
+        among = [c for c in screened if c.name in self.fitter.static and net_gain(c, self.fitter) >= least]
+        if len(among) < 2 or self.fitter.grips(model.names):
+            return []
+        chosen = forward_selection(self.fitter, model, among)[: MOST_LAWS - len(model.names)]
+        return [chosen] if len(chosen) > 1 else []
 
     def one_law_fewer(self, model: FittedModel) -> Iterator[Neighbour]:
         """The model without each of its laws, and with the simpler ones that they contain in their place."""
@@ -207,10 +224,18 @@ class EvidenceSearch:
         return self.fitter.laws[name].family or name
 
     def _step(self, model: FittedModel, found: FittedModel) -> None:
+        """Note a move; of several laws that came together, one after another, the one first that explains more alone."""
         self._note_ranking()
-        new = sorted(found.names - model.names)
         gone = tuple(sorted(model.names - found.names))
         self.progress(f"{' + '.join(sorted(found.names)) or 'the joint alone'} explains more", 0.5)
+        while len(new := sorted(found.names - model.names)) > 1:
+            effects = self.fitter.effects(found)
+            beside = [
+                self.fitter.fit_model({**self.fitter.effects(model), name: effects[name]}, model) for name in new
+            ]  # fmt: skip
+            best = min(range(len(new)), key=lambda k: beside[k].criterion)
+            model = beside[best]
+            self.path.append(SearchStep(model, new[best], (), ()))
         self.path.append(SearchStep(found, new[0] if new else None, gone, ()))
 
     def _note_ranking(self) -> None:

@@ -6,7 +6,7 @@ simpler one takes its place. `evidence_search` says which moves are tried; `mode
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -54,6 +54,13 @@ def with_law(fitter: ModelFitter, model: FittedModel, candidate: Candidate) -> N
     # A law that remembers was tuned together with the model's own parameters.
     joint = with_values(model.system, candidate.moved) if candidate.effect.states else None
     return Neighbour(effects, joint, begun={} if candidate.begun is None else {candidate.name: candidate.begun})
+
+
+def with_laws(fitter: ModelFitter, model: FittedModel, candidates: Sequence[Candidate]) -> Neighbour:
+    """The model with several more laws that remember nothing, from their values beside one another."""
+    gone = frozenset().union(*(give_way(fitter, model, c.name) for c in candidates))
+    kept = {n: e for n, e in fitter.effects(model).items() if n not in gone}
+    return Neighbour(kept | {c.name: c.effect for c in candidates})
 
 
 def in_other_forms(fitter: ModelFitter, model: FittedModel, name: str) -> Iterator[Neighbour]:
