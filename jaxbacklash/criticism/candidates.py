@@ -9,7 +9,7 @@ side count on that side only. The same sensitivities tell which laws promise mor
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -108,9 +108,11 @@ def _groups(model: FittedModel, shapes: list[tuple[str, AbstractEffect]]) -> lis
     return groups
 
 
-def forward_selection(builder: ModelBuilder, model: FittedModel, candidates: Sequence[Candidate]) -> list[Candidate]:
-    """Candidates that promise more together than any does alone, chosen one after another by the score test of all chosen ones
-    (forward selection), each at its values beside the others. ``gain`` is what each adds to those before it.
+def stepwise_selection(
+    builder: ModelBuilder, model: FittedModel, candidates: Sequence[Candidate]
+) -> tuple[list[Candidate], float]:
+    """Candidates that promise more together than any does alone, by the score test of several at once: chosen one after another,
+    then those left out again that the others make up for (Efroymson 1960).
 
     Parameters
     ----------
@@ -121,30 +123,37 @@ def forward_selection(builder: ModelBuilder, model: FittedModel, candidates: Seq
 
     Returns
     -------
-    list of Candidate
-        At least two; none where the others add less than `PROMISING` of what the first brings.
+    list of Candidate, float
+        At least two, each at its values beside the others, and the fall of the criterion that they promise together; none where
+        no second one brings `PROMISING` of what the first does.
     """
     room = _room(model, [(c.name, null(c.effect)) for c in candidates])
     shapes: dict[str, AbstractEffect] = {}
     for one in candidates:
         if sum(len(strengths(e)) for e in (*shapes.values(), one.effect)) <= room:
             shapes[one.name] = null(one.effect)
-    score = _Score(builder, model, shapes)
-    each, laws = float(np.log(builder.record.samples)), builder.laws
-    chosen: list[Candidate] = []
-    least, before = 0.0, 0.0
-    while True:
-        taken = [c.name for c in chosen]
-        left = [n for n in shapes if n not in taken and not any(_exclude(laws[n], laws[t]) for t in taken)]
-        tried = [score.promise([*taken, n]) for n in left]
-        nets = [t[-1].gain - before - each * t[-1].parameters for t in tried]
-        if not nets or max(nets) <= least:
-            return chosen if len(chosen) > 1 else []
-        best = tried[int(np.argmax(nets))]
-        whole = best[-1].gain
-        gains = [*(c.gain for c in chosen), whole - before]
-        chosen, before = [replace(c, gain=g) for c, g in zip(best, gains)], whole
-        least = max(least, PROMISING * (gains[0] - each * chosen[0].parameters))
+    score, laws = _Score(builder, model, shapes), builder.laws
+    each = {c.name: float(np.log(builder.record.samples)) * c.parameters for c in candidates}
+
+    def net(names: list[str]) -> float:
+        return (score.promise(names)[0].gain - sum(each[n] for n in names)) if names else 0.0
+
+    chosen: list[str] = []
+    least = 0.0
+    while left := [n for n in shapes if n not in chosen and not any(_exclude(laws[n], laws[c]) for c in chosen)]:
+        brings = {n: net([*chosen, n]) - net(chosen) for n in left}
+        best = max(left, key=lambda n: brings[n])
+        if brings[best] <= least:
+            break
+        chosen.append(best)
+        least = max(least, PROMISING * net(chosen[:1]))
+    while len(chosen) > 1:
+        costs = {n: net(chosen) - net([c for c in chosen if c != n]) for n in chosen}
+        least_needed = min(chosen, key=lambda n: costs[n])
+        if costs[least_needed] > least:
+            return score.promise(chosen), net(chosen)
+        chosen.remove(least_needed)
+    return [], 0.0
 
 
 def _exclude(law: type[AbstractEffect], other: type[AbstractEffect]) -> bool:

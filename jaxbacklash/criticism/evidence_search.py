@@ -14,7 +14,7 @@ from dataclasses import replace
 
 from ..fitting.search import silent
 from ..fitting.settings import CLEAR_SHARE, CLOSE, MOST_FITTED, MOST_LAWS, PROMISING, SCATTER, SHARP, TIGHTEST
-from .candidates import Candidate, forward_selection, share_of_rest
+from .candidates import Candidate, share_of_rest, stepwise_selection
 from .evidence import demanded, leaves_noise, noise_too_large
 from .fitted_model import FittedModel
 from .model_fitter import ExhaustedError, ModelFitter
@@ -134,20 +134,21 @@ class EvidenceSearch:
         if len(model.names) >= MOST_LAWS:
             return
         screened, enough = self.screened(model), 0.0
-        for chosen in self._together(model, screened):
+        chosen, promised = self._together(model, screened)
+        if chosen:
             yield (neighbour := with_laws(self.fitter, model, chosen))
             if leaves_noise(self.fitter.fitted[neighbour.names]):
-                enough = sum(net_gain(c, self.fitter) for c in chosen)
+                enough = promised
         yield from self._with_each(model, screened, enough=enough)
 
-    def _together(self, model: FittedModel, screened: list[Candidate]) -> list[list[Candidate]]:
-        """The set of promising laws that promises more than any of them alone, if there is one."""
-        least = max(self.demand, PROMISING * max((net_gain(c, self.fitter) for c in screened), default=0.0))
-        among = [c for c in screened if c.name in self.fitter.static and net_gain(c, self.fitter) >= least]
+    def _together(self, model: FittedModel, screened: list[Candidate]) -> tuple[list[Candidate], float]:
+        """The laws that promise more together than any of them alone, and what, if there are such: a small one may show beside
+        another."""
+        among = [c for c in screened if c.name in self.fitter.static and net_gain(c, self.fitter) > self.demand]
         if len(among) < 2 or self.fitter.grips(model.names):
-            return []
-        chosen = forward_selection(self.fitter, model, among)[: MOST_LAWS - len(model.names)]
-        return [chosen] if len(chosen) > 1 else []
+            return [], 0.0
+        chosen, promised = stepwise_selection(self.fitter, model, among)
+        return (chosen, promised) if len(chosen) <= MOST_LAWS - len(model.names) else ([], 0.0)
 
     def one_law_fewer(self, model: FittedModel) -> Iterator[Neighbour]:
         """The model without each of its laws, and with the simpler ones that they contain in their place."""
