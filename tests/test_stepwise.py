@@ -1,9 +1,12 @@
 """Laws that promise more together than any does alone: found where two hide, and not where one does."""
 
+import numpy as np
 import pytest
 
-from jaxbacklash.criticism.candidates import score_test, stepwise_selection
+from jaxbacklash.criticism.candidates import form_gain, score_test, stepwise_selection
 from jaxbacklash.criticism.screening import net_gain
+from jaxbacklash.effects.damping import ContactDamping
+from jaxbacklash.effects.loads import Gravity
 
 from .hidden import fitter, hidden, noisier
 
@@ -37,3 +40,14 @@ def test_where_one_effect_hides_no_set_is_proposed(name):
     own = fitter(noisier(record, 10.0, 4), rig.inertia)
     alone = own.fit_model({})
     assert stepwise_selection(own, alone, promising(own, alone)) == ([], 0.0)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.6])
+def test_a_form_with_an_angle_is_promised_something_where_the_zero_is_off_the_vertical(angle):
+    record, rig, _, _ = hidden("gravity", "chirp", 3, G=40.0, phi0=angle)
+    own = fitter(record, rig.inertia)
+    model = own.fit_model({"gravity": Gravity(35.0)})
+    gain = form_gain(own, model, "gravity", Gravity(35.0, 0.01))
+    assert gain > 100.0 if angle else gain < 20.0
+    damped = own.fit_model({"contact_damping": ContactDamping(2.0)})
+    assert form_gain(own, damped, "contact_damping", ContactDamping(2.0, 0.0)) == np.inf

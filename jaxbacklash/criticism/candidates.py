@@ -156,6 +156,20 @@ def stepwise_selection(
     return [], 0.0
 
 
+def form_gain(builder: ModelBuilder, model: FittedModel, name: str, form: AbstractEffect) -> float:
+    """The fall of the criterion that another form of one of a model's laws promises by the parameters that it frees, by their
+    score test where the law holds them; infinite of a form that frees none, which only a fit can tell."""
+    law = model.system.effects[name]
+    freed = [n for n in free_specs(form) if n not in free_specs(law)]
+    if not freed:
+        return np.inf
+    problem, _ = builder.problem(builder.effects(model), model.system, extra=[f"{name}.{n}" for n in freed])
+    information, score, _ = builder.sensitivities(tied(problem, model.tie), model.unknowns)
+    q = len(model.free)
+    gain = _gain(information[: q + len(freed), : q + len(freed)], score[: q + len(freed)], q)[1]
+    return gain / model.deflation - len(freed) * float(np.log(builder.record.samples))
+
+
 def _exclude(law: type[AbstractEffect], other: type[AbstractEffect]) -> bool:
     """Whether a model holds one of two laws at a time."""
     return (rubs(law) and rubs(other)) or (bool(law.family) and law.family == other.family)

@@ -14,7 +14,7 @@ import numpy as np
 from ..mechanics import AbstractEffect, canonical_name
 from ..parameters import with_values
 from ..system import System
-from .candidates import Candidate, rubs
+from .candidates import Candidate, form_gain, rubs
 from .fitted_model import FittedModel
 from .model_fitter import ModelFitter
 
@@ -64,8 +64,10 @@ def with_laws(fitter: ModelFitter, model: FittedModel, candidates: Sequence[Cand
 
 
 def in_other_forms(fitter: ModelFitter, model: FittedModel, name: str) -> Iterator[Neighbour]:
-    """A fitted model with one of its laws in each of its other forms: the same laws by name."""
+    """A fitted model with one of its laws in each of its other forms that may do as well: the same laws by name."""
     for form in fitter.effects(model)[name].forms():
+        if not form_gain(fitter, model, name, form) > 0.0:
+            continue
         yield Neighbour({**fitter.effects(model), name: form}, near=model)
 
 
