@@ -1,11 +1,14 @@
 """The block tridiagonal solver and the step of a fit against dense algebra, and damping that leaves tied windows free to move
 together."""
 
+import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 from scipy import optimize
 
+from jaxbacklash.shooting import block_tridiagonal, damped_step, side_by_side_windows
 from jaxbacklash.shooting.block_tridiagonal import (
     bordered,
     eliminate,
@@ -14,8 +17,9 @@ from jaxbacklash.shooting.block_tridiagonal import (
     solve_lower,
     solve_upper,
 )
-from jaxbacklash.shooting.damped_step import solve
 from jaxbacklash.shooting.multiple_shooting import Blocks
+
+solve = eqx.filter_jit(damped_step.solve)
 
 
 def system(rng, windows=5, size=3, q=2):
@@ -60,25 +64,39 @@ def test_factor_is_that_of_the_dense_matrix():
     np.testing.assert_allclose(np.ravel(inverse_diagonal(factor)[:windows]), np.diag(np.linalg.inv(dense)), rtol=1e-9)
 
 
-@pytest.mark.parametrize("q", [0, 1, 3])
-def test_elimination_leaves_the_schur_complement_and_the_score(q):
+ONE_BY_ONE, SIDE_BY_SIDE = block_tridiagonal.eliminate, side_by_side_windows.eliminate
+CHAINS = [(0, 5, ONE_BY_ONE), (3, 5, ONE_BY_ONE), (0, 40, SIDE_BY_SIDE), (2, 3, SIDE_BY_SIDE), (2, 49, SIDE_BY_SIDE)]
+
+
+@pytest.mark.parametrize(("q", "windows", "way"), CHAINS)
+def test_elimination_leaves_the_schur_complement_and_the_score(q, windows, way):
+    """One after the other, and in stretches: as many as there are lanes or fewer, whole ones and one that is cut short."""
     rng = np.random.default_rng(q)
-    blocks, matrix, slope = system(rng, q=q)
-    windows, size = blocks.slope.shape
+    blocks, matrix, slope = system(rng, windows=windows, q=q)
+    size = blocks.slope.shape[1]
     n = windows * size
     along = [padded(np.asarray(part), rng) for part in (blocks.diagonal, blocks.below, blocks.border, blocks.slope)]
-    done = eliminate(*along[:3], blocks.corner, along[3], blocks.slope_theta, windows)
+    done = jax.jit(way)(*along[:3], blocks.corner, along[3], blocks.slope_theta, windows)
     inner = np.linalg.inv(matrix[:n, :n])
     schur = matrix[n:, n:] - matrix[n:, :n] @ inner @ matrix[:n, n:]
     np.testing.assert_allclose(done.schur, schur, rtol=1e-9)
     np.testing.assert_allclose(done.score, -slope[n:] + matrix[n:, :n] @ inner @ slope[:n], rtol=1e-9, atol=1e-12)
+    assert float(done.log_determinant) == pytest.approx(np.linalg.slogdet(matrix[:n, :n])[1])
     step = rng.standard_normal(q)
     local = -inner @ (slope[:n] + matrix[:n, n:] @ step)
-    np.testing.assert_allclose(np.ravel(done.local(step)[:windows]), local, rtol=1e-8)
-    assert np.all(np.asarray(done.local(step))[windows:] == 0.0)
+    found = np.asarray(jax.jit(lambda done: done.local(step))(done))
+    np.testing.assert_allclose(np.ravel(found[:windows]), local, rtol=1e-8, atol=1e-12)
+    assert np.all(found[windows:] == 0.0)
     whole = np.concatenate([local, step])
     promise = -(slope @ whole + 0.5 * whole @ matrix @ whole)
     assert float(done.promise(step, done.schur)) == pytest.approx(promise, rel=1e-9)
+
+
+def test_a_border_may_be_added_later():
+    blocks, _, _ = system(np.random.default_rng(2))
+    done = eliminate(
+        blocks.diagonal, blocks.below, blocks.border, blocks.corner, blocks.slope, blocks.slope_theta, blocks.slope.shape[0]
+    )
     again = bordered(done.factor, done.halfway, blocks.corner, blocks.slope_theta)
     np.testing.assert_array_equal(again.schur, done.schur)
 
@@ -86,6 +104,9 @@ def test_elimination_leaves_the_schur_complement_and_the_score(q):
 def test_a_matrix_that_is_not_positive_definite_says_so():
     blocks, _, _ = system(np.random.default_rng(1))
     assert np.isnan(factorise(-blocks.diagonal, blocks.below, 5).log_determinant)
+    blocks, _, _ = system(np.random.default_rng(1), windows=30)
+    parts = blocks.below, blocks.border, blocks.corner, blocks.slope, blocks.slope_theta
+    assert np.isnan(jax.jit(SIDE_BY_SIDE)(-blocks.diagonal, *parts, 30).log_determinant)
 
 
 @pytest.mark.parametrize("damping", [0.0, 0.3])

@@ -62,7 +62,17 @@ class Eliminated(eqx.Module):
 
     def promise(self, step: Array, information: Array) -> Array:
         """By how much both steps lower the cost, as its second-order expansion tells, with ``information`` (q, q) for S."""
-        return self.gain + step @ self.score - 0.5 * step @ information @ step
+        return promise(self, step, information)
+
+    @property
+    def log_determinant(self) -> Array:
+        """Logarithm of the determinant of T."""
+        return self.factor.log_determinant
+
+
+def promise(of: Any, step: Array, information: Array) -> Array:
+    """By how much a step (q,) of the parameters lowers the cost, the windows' own step with it."""
+    return of.gain + step @ of.score - 0.5 * step @ information @ step
 
 
 def factorise(diagonal: Array, below: Array, used: Array | int) -> Factor:
@@ -84,7 +94,7 @@ def factorise(diagonal: Array, below: Array, used: Array | int) -> Factor:
     >>> float(np.exp(factor.log_determinant))  # of [[2, 1], [1, 2]]  # doctest: +SKIP
     3.0
     """
-    return _factorise(diagonal, below, jnp.zeros((*diagonal.shape[:2], 0)), used)[0]
+    return factorise_with(diagonal, below, jnp.zeros((*diagonal.shape[:2], 0)), used)[0]
 
 
 def eliminate(
@@ -99,7 +109,7 @@ def eliminate(
     corner : (q, q)
     slope, slope_theta : (W, B) and (q,), the gradient of the cost
     """
-    factor, halfway = _factorise(diagonal, below, jnp.concatenate([border, slope[:, :, None]], axis=2), used)
+    factor, halfway = factorise_with(diagonal, below, jnp.concatenate([border, slope[:, :, None]], axis=2), used)
     return bordered(factor, halfway, corner, slope_theta)
 
 
@@ -147,8 +157,8 @@ def inverse_diagonal(factor: Factor) -> Array:
     return scan_used(step, jnp.zeros((size, size)), (factor.own, factor.link), factor.used, reverse=True)
 
 
-def _factorise(diagonal: Array, below: Array, right: Array, used: Array | int) -> tuple[Factor, Array]:
-    """The factor, and its lower solution for right sides (W, B, R): one triangular solve a window takes both."""
+def factorise_with(diagonal: Array, below: Array, right: Array, used: Array | int) -> tuple[Factor, Array]:
+    """The factor as of `factorise`, and its lower solution for right sides (W, B, R): one triangular solve takes both."""
     size = diagonal.shape[1]
 
     def step(taken: Any, block: Any) -> Any:

@@ -11,7 +11,7 @@ import equinox as eqx
 import jax
 import jax.numpy as jnp
 
-from .block_tridiagonal import eliminate
+from . import block_tridiagonal, side_by_side_windows
 from .multiple_shooting import Blocks
 
 Array = Any
@@ -60,6 +60,8 @@ def solve(
     used = jnp.asarray(blocks.slope.shape[0] if used is None else used)
     added = _added(blocks, used)
     diagonal = blocks.diagonal + (damping * blocks.seen + added)[:, :, None] * eye
+    few = blocks.slope.shape[1] <= side_by_side_windows.MOST
+    eliminate: Any = (side_by_side_windows if few else block_tridiagonal).eliminate
     done = eliminate(diagonal, blocks.below, blocks.border, blocks.corner, blocks.slope, blocks.slope_theta, used)
     if q:
         damped = done.schur + damping * jnp.diag(blocks.seen_theta)
@@ -67,7 +69,7 @@ def solve(
     else:
         damped, theta = done.schur, jnp.zeros(0)
     # What is added for an unknown that moves nothing is no information about it.
-    log_determinant = done.factor.log_determinant - jnp.sum(jnp.log(jnp.where(added > 0.0, added, 1.0)))
+    log_determinant = done.log_determinant - jnp.sum(jnp.log(jnp.where(added > 0.0, added, 1.0)))
     return DampedStep(done.local(theta), theta, done.schur, done.score, done.promise(theta, damped), log_determinant)
 
 
