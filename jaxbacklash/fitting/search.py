@@ -26,7 +26,21 @@ from .continuation import Continued, Stop, continued, in_one_run, log_evidence, 
 from .friction_homotopy import sliding_speeds
 from .left_out import misfit, most_of_noise
 from .segment import determines, segment, variance_ratio
-from .settings import BETWEEN, CLOSELY, EXPLAINED, FINER, JOINED, LAST, LIKELY, LOOSE, LOOSEST, ROUGHLY, TIGHTEST, WITHIN_CHANCE
+from .settings import (
+    BETWEEN,
+    CLOSELY,
+    EXPLAINED,
+    FINER,
+    JOINED,
+    LAST,
+    LIKELY,
+    LOOSE,
+    LOOSEST,
+    ROUGHLY,
+    TIGHTEST,
+    UNKEPT,
+    WITHIN_CHANCE,
+)
 from .setup import first_guess, make_problem
 from .stick_slip import search_stick_slip, sticks_and_slips
 
@@ -194,11 +208,16 @@ def _one_trajectory(problem: Problem, start: Unknowns) -> Continued | None:
     count, steps = freedom(problem, tied=True), int(minimum.stats["steps"])
     if steps >= BETWEEN or not 2.0 * float(minimum.stats["cost"]) < most_of_noise(count, LIKELY) ** 2 * count:
         return None
-    looser = minimise(beside, minimum.value, Levenberg(limit=BETWEEN, atol=ROUGHLY))
-    height = log_evidence(at, minimum)
-    if height < log_evidence(beside, looser) - WITHIN_CHANCE:
+    looser, height = minimise(beside, minimum.value, Levenberg(limit=1)), log_evidence(at, minimum)
+    # What a step promises near a minimum it keeps: it is taken only where a little less would decide otherwise.
+    promised = float(looser.stats["promise"])
+    likelier = log_evidence(beside, looser) + promised - height
+    if abs(likelier - WITHIN_CHANCE) < UNKEPT * promised:
+        looser = minimise(beside, minimum.value, Levenberg(limit=BETWEEN, atol=ROUGHLY))
+        likelier = log_evidence(beside, looser) - height
+    if likelier > WITHIN_CHANCE:
         return None
-    stops = (Stop(TIGHTEST, height, steps), Stop(JOINED, log_evidence(beside, looser), int(looser.stats["steps"])))
+    stops = (Stop(TIGHTEST, height, steps), Stop(JOINED, height + likelier, int(looser.stats["steps"])))
     return Continued(at, minimum, height, stops, True, {TIGHTEST: minimum.value, JOINED: looser.value})
 
 
