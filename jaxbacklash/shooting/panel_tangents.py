@@ -130,8 +130,8 @@ def _of_linear(w: Windows, rebuild: Any, theta: Array, active: Array, plain: Pla
     side, stays = sides(rebuild(theta), t, plain, inputs, _ends(w, inputs[n:]), w.panel)
     away = (side != 0.0)[:, None, None, :]
     by_own = jnp.where(away, plain.end[2, : n + 4, :, None], plain.end[1, : n + 4, :, None])
-    by_theta = jnp.stack([jnp.stack(mapped(moved, side, inputs), axis=1) for moved in plain.moved], axis=1)
-    matrices = jnp.concatenate([by_own, by_theta], axis=1)
+    by_theta = [jnp.stack(mapped(moved, side, inputs), axis=1)[:, None] for moved in plain.moved]
+    matrices = jnp.concatenate([by_own, *by_theta], axis=1)
 
     before = jnp.cumsum(~stays.ravel())
     differentiated = _differentiated(w, rebuild, theta, active, n)
