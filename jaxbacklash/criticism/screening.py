@@ -18,7 +18,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from ..fitting.settings import SEEN
+from ..fitting.settings import PROMISING, SEEN
 from ..mechanics import canonical_name
 from ..parameters import free_specs, values
 from ..regression.tuning import tune
@@ -68,19 +68,18 @@ def _remembering(fitter: ModelFitter, model: FittedModel, absent: Sequence[str],
     form, found = fitter.weak_form, []
     test: ForceTest | None = None
     promised = {c.name: net_gain(c, fitter) for c in static}
-    for name in absent:
-        if form.blind or not fitter.laws[name].states:
-            continue
-        gone = give_way(fitter, model, name)
-        system, free = _without(model, gone)
-        shapes = fitter.laws[name].guesses(system, form.motion)
+    asked = {n: _Asked(fitter, model, n) for n in absent if fitter.laws[n].states and not form.blind}
+    # What promises little at all of the shapes it is begun with, beside what another law that remembers does, is not tuned.
+    least = max(SEEN, PROMISING * max((one.evidence for one in asked.values()), default=0.0))
+    for name, one in asked.items():
+        gone, system, free, shapes = one.gone, one.system, one.free, one.shapes
         moved: dict[str, float] = {}
         begun: np.ndarray | None = None
         if measures_only(fitter.laws[name]):
             test = test or ForceTest(fitter, model)
             gain, effect = test.best_shown(shapes)
-        elif form.evidence(system, free, shapes) <= SEEN:
-            continue  # what promises nothing at any of the shapes it is begun with is not tuned
+        elif one.evidence < least:
+            continue
         else:
             test = test or ForceTest(fitter, model)
             tuned = tune(form, system, free, shapes)
@@ -95,6 +94,18 @@ def _remembering(fitter: ModelFitter, model: FittedModel, absent: Sequence[str],
         if net_gain(candidate, fitter) > max((promised[n] for n in near if n in promised), default=-np.inf):
             found.append(candidate)
     return found
+
+
+class _Asked:
+    """A law that remembers beside a model without what would give way to it: its ``shapes``, and the weak form's ``evidence`` for
+    the likeliest of them."""
+
+    def __init__(self, fitter: ModelFitter, model: FittedModel, name: str) -> None:
+        law, form = fitter.laws[name], fitter.weak_form
+        self.gone = give_way(fitter, model, name)
+        self.system, self.free = _without(model, self.gone)
+        self.shapes = law.guesses(self.system, form.motion)
+        self.evidence = 0.0 if measures_only(law) else form.evidence(self.system, self.free, self.shapes)
 
 
 def _without(model: FittedModel, names: frozenset[str]) -> tuple[System, tuple[str, ...]]:
