@@ -7,7 +7,7 @@ simpler one takes its place. `evidence_search` says which moves are tried; `mode
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -61,6 +61,16 @@ def with_laws(fitter: ModelFitter, model: FittedModel, candidates: Sequence[Cand
     gone = frozenset().union(*(give_way(fitter, model, c.name) for c in candidates))
     kept = {n: e for n, e in fitter.effects(model).items() if n not in gone}
     return Neighbour(kept | {c.name: c.effect for c in candidates})
+
+
+def beside(fitter: ModelFitter, model: FittedModel, neighbour: Neighbour) -> Neighbour:
+    """A neighbour whose laws that are the model's too start as they are there: what they are without a law that another one takes
+    the place of may be far off."""
+    if neighbour.near is not None:
+        return neighbour
+    return replace(
+        neighbour, effects=neighbour.effects | {n: e for n, e in fitter.effects(model).items() if n in neighbour.names}
+    )
 
 
 def in_other_forms(fitter: ModelFitter, model: FittedModel, name: str) -> Iterator[Neighbour]:

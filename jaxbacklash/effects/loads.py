@@ -37,6 +37,10 @@ class Gravity(AbstractEffect):
     def forms(self) -> list[AbstractEffect]:
         return [Gravity(self.G * np.cos(self.phi0)) if float(self.phi0) else Gravity(self.G, 0.01)]
 
+    def simpler(self) -> list[AbstractEffect]:
+        # Seen from far off the vertical the weight hardly changes over a swing.
+        return [Preload(self.G * np.sin(self.phi0))] if float(self.phi0) else []
+
     def torque(self, now: Instant) -> Scalar:
         return self.G * jnp.sin(now.y + self.phi0)
 
