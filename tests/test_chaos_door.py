@@ -51,6 +51,7 @@ def test_result_and_page(call, driven, tmp_path):
     assert "http" not in page.replace("http://www.w3.org", "")
 
 
+@pytest.mark.slow
 def test_a_drive_that_never_repeats_makes_the_answer_conditional(call, tmp_path):
     x, z, exact = swept(0.055)
     path = write(tmp_path / "sweep.csv", "t,x,z", DT * np.arange(x.size), x, z)

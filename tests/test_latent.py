@@ -52,6 +52,7 @@ def test_gravity_is_over_the_absolute_angle_and_frees_the_parameters(gravity):
         assert abs(here - getattr(rig, name)) < 0.3 * abs(fitted - getattr(rig, name))
 
 
+@pytest.mark.slow
 def test_learned_torque_closes_the_gap(gravity, tmp_path):
     fit, _, surface, _, _, _ = gravity
     system = surface.system.with_effects(surface.effect())

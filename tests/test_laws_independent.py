@@ -257,7 +257,10 @@ def pieces_of(excitation, duration):
     return _pieces(excitation.base, duration), _pieces(excitation.force, duration)
 
 
-@pytest.mark.parametrize("name", ["clock_drift", "sensor_filter", "sensor_delay"])
+SLOW = [pytest.param(name, marks=pytest.mark.slow) for name in ("clock_drift", "sensor_filter")]
+
+
+@pytest.mark.parametrize("name", [*SLOW, "sensor_delay"])
 def test_what_the_measuring_chain_does_follows_the_generator(name):
     """Alone, and beside dry friction that drifts and a disturbance, which go by the clock of the input."""
     values_of = {n: {k: float(v) for k, v in values(LAWS[n]).items() if k != "width"} for n in LAWS if n != "learned_torque"}

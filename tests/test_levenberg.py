@@ -56,6 +56,7 @@ def test_blocks_are_those_of_the_rows_that_optimistix_is_handed(name):
     np.testing.assert_allclose(blocks.slope_theta[:active], slope[:active], rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_a_step_that_is_turned_down_changes_nothing_but_the_damping():
     builder, _ = joint(None, 2, 4.0)
     problem, _ = builder.problem({}, builder.base)

@@ -52,6 +52,7 @@ def test_a_slow_motion_gets_few_knots_and_a_small_fast_one_on_top_is_not_lost():
     assert choose_intervals(t, fast + noise, 0.1) >= 8
 
 
+@pytest.mark.slow
 def test_the_fitted_input_has_no_corner_where_no_knot_is_needed():
     rig, _, record = seen(0)
     windows, layout = cut([record], 0.1)

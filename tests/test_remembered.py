@@ -41,6 +41,7 @@ def test_reach_is_told_in_the_order_of_the_states(own):
     assert system.reach == (np.inf, np.inf, np.inf, np.inf, Lugre.reach)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effect", [Dahl(1.0, 1000.0), BoucWen(1000.0, 1.0), Lugre(1000.0, Fc=1.0, Fs=4.9)], ids=canonical_name)
 def test_no_memory_leaves_its_reach(effect):
     """Back and forth, fast and slowly, from rest and from the other end: friction at rest is at most ``Fs`` in LuGre's law."""
@@ -52,6 +53,7 @@ def test_no_memory_leaves_its_reach(effect):
             assert abs(s) <= effect.reach * (1.0 + 1e-6)
 
 
+@pytest.mark.slow
 def test_what_is_remembered_goes_on_through_free_windows(free):
     """The motion jumps as the noise has it, the memory hardly does; and the fit finds what was hidden."""
     problem, minimum = free

@@ -144,7 +144,7 @@ def test_the_papers_simple_reduction_gains_too(henon):
     assert left < 0.7 * 0.05
 
 
-@pytest.mark.parametrize(("name", "window"), [("lorenz", 15), ("henon", 6)])
+@pytest.mark.parametrize(("name", "window"), [pytest.param("lorenz", 15, marks=pytest.mark.slow), ("henon", 6)])
 def test_noise_reduction_does_not_invent_chaos(name, window, request):
     """Cleaned first and passed off as measured: a surrogate of a map is as good as white, and a projection would fold it."""
     for made in iaaft(request.getfixturevalue(name), 3, rng(7)):
@@ -177,7 +177,7 @@ def test_exponent_of_maps(system, share, noise):
     assert found.predicts
 
 
-@pytest.mark.parametrize("noise", [0.0, 0.02])
+@pytest.mark.parametrize("noise", [0.0, pytest.param(0.02, marks=pytest.mark.slow)])
 def test_exponent_of_lorenz(noise):
     series = with_noise(LORENZ.series(5000, 1, 6)[0], noise)
     found = chaos(series, LORENZ.dt, clean=bool(noise))

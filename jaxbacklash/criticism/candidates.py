@@ -14,10 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..fitting.continuation import tied
-from ..fitting.settings import PROMISING
+from ..fitting.settings import MEASURING, PROMISING
 from ..mechanics import AbstractEffect
 from ..parameters import free_specs, specs, with_values
 from ..regression.spectrum import read_off
+from .evidence import measures_only
 from .fitted_model import FittedModel
 from .model_builder import ModelBuilder, strengths, width
 
@@ -134,6 +135,7 @@ def stepwise_selection(
             shapes[one.name] = null(one.effect)
     score, laws = _Score(builder, model, shapes), builder.laws
     each = {c.name: float(np.log(builder.record.samples)) * c.parameters for c in candidates}
+    each = {n: cost + MEASURING * measures_only(laws[n]) for n, cost in each.items()}  # as in the criterion
 
     def net(names: list[str]) -> float:
         return (score.promise(names)[0].gain - sum(each[n] for n in names)) if names else 0.0
