@@ -18,7 +18,7 @@ from .candidates import Candidate, share_of_rest, stepwise_selection
 from .evidence import demanded, leaves_noise, noise_too_large
 from .fitted_model import FittedModel
 from .model_fitter import ExhaustedError, ModelFitter
-from .moves import Neighbour, beside, in_other_forms, with_law, with_laws, with_simpler_law, without_law
+from .moves import Neighbour, in_other_forms, with_law, with_laws, with_others_of, with_simpler_law, without_law
 from .screening import net_gain, screen
 from .steps import SearchStep
 
@@ -165,7 +165,7 @@ class EvidenceSearch:
             screened = self.screened(without)
             enough = max((net_gain(c, self.fitter) for c in screened if c.name == name), default=0.0)
             others = self._with_each(without, screened, self._family(name), enough if leaves_noise(model) else 0.0)
-            yield from (beside(self.fitter, model, n) for n in others if n.names != model.names)
+            yield from (with_others_of(self.fitter, model, n) for n in others if n.names != model.names)
 
     def _in_other_forms(self, model: FittedModel, name: str) -> Iterator[Neighbour]:
         """A fitted model with one of its laws in each of its other forms, unless that was looked at."""

@@ -52,10 +52,10 @@ class ForceTest:
         found = [self.fall(torque) for torque in torques]
         best = max(range(len(shapes)), key=lambda k: found[k][0])
         while found[best][0] > 0.0:
-            truly = self._answer(self._at_edges(torques[best]), found[best][1])
-            if truly < 0.0:
+            rise = self._answer(self._at_edges(torques[best]), found[best][1])
+            if rise < 0.0:
                 break
-            found[best] = bent(*found[best], truly)
+            found[best] = redrawn(*found[best], rise)
             best = max(range(len(shapes)), key=lambda k: found[k][0])
         gain, size = found[best]
         return gain, shapes[best].scaled(size) if gain > 0.0 and not instead else shapes[best], best
@@ -96,14 +96,14 @@ class ForceTest:
         return answered(problem, self.unknowns)[0] - self.still
 
 
-def bent(gain: float, size: float, truly: float) -> tuple[float, float]:
-    """Gain and size anew where the cost has risen by ``truly`` at a size far beyond the shares that were tried.
+def redrawn(gain: float, size: float, rise: float) -> tuple[float, float]:
+    """Gain and size anew where the cost has risen by ``rise`` at a size far beyond the shares that were tried.
 
     They are those of the parabola of the same slope through that point, which halves both at least; nothing where the motion ran
     away.
     """
-    if not np.isfinite(truly):
+    if not np.isfinite(rise):
         return 0.0, 1.0
     slope = -gain / size
-    curvature = 2.0 * (truly - slope * size) / size**2
+    curvature = 2.0 * (rise - slope * size) / size**2
     return slope**2 / curvature, -slope / curvature

@@ -63,7 +63,7 @@ def with_laws(fitter: ModelFitter, model: FittedModel, candidates: Sequence[Cand
     return Neighbour(kept | {c.name: c.effect for c in candidates})
 
 
-def beside(fitter: ModelFitter, model: FittedModel, neighbour: Neighbour) -> Neighbour:
+def with_others_of(fitter: ModelFitter, model: FittedModel, neighbour: Neighbour) -> Neighbour:
     """A neighbour whose laws that are the model's too start as they are there: what they are without a law that another one takes
     the place of may be far off."""
     if neighbour.near is not None:

@@ -68,7 +68,7 @@ def _remembering(fitter: ModelFitter, model: FittedModel, absent: Sequence[str],
     form, found = fitter.weak_form, []
     test: ForceTest | None = None
     promised = {c.name: net_gain(c, fitter) for c in static}
-    asked = {n: _Asked(fitter, model, n) for n in absent if fitter.laws[n].states and not form.blind}
+    asked = {n: _Remembering(fitter, model, n) for n in absent if fitter.laws[n].states and not form.blind}
     # What promises little at all of the shapes it is begun with, beside what another law that remembers does, is not tuned.
     least = max(SEEN, PROMISING * max((one.evidence for one in asked.values()), default=0.0))
     for name, one in asked.items():
@@ -96,7 +96,7 @@ def _remembering(fitter: ModelFitter, model: FittedModel, absent: Sequence[str],
     return found
 
 
-class _Asked:
+class _Remembering:
     """A law that remembers beside a model without what would give way to it: its ``shapes``, and the weak form's ``evidence`` for
     the likeliest of them."""
 

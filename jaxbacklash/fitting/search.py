@@ -38,7 +38,6 @@ from .settings import (
     LOOSEST,
     ROUGHLY,
     TIGHTEST,
-    UNKEPT,
     WITHIN_CHANCE,
 )
 from .setup import first_guess, make_problem
@@ -209,12 +208,8 @@ def _one_trajectory(problem: Problem, start: Unknowns) -> Continued | None:
     if steps >= BETWEEN or not 2.0 * float(minimum.stats["cost"]) < most_of_noise(count, LIKELY) ** 2 * count:
         return None
     looser, height = minimise(beside, minimum.value, Levenberg(limit=1)), log_evidence(at, minimum)
-    # What a step promises near a minimum it keeps: it is taken only where a little less would decide otherwise.
-    promised = float(looser.stats["promise"])
-    likelier = log_evidence(beside, looser) + promised - height
-    if abs(likelier - WITHIN_CHANCE) < UNKEPT * promised:
-        looser = minimise(beside, minimum.value, Levenberg(limit=BETWEEN, atol=ROUGHLY))
-        likelier = log_evidence(beside, looser) - height
+    # Near a minimum a step keeps what it promises; a promise that is too large only sends the fit the longer way.
+    likelier = log_evidence(beside, looser) + float(looser.stats["promise"]) - height
     if likelier > WITHIN_CHANCE:
         return None
     stops = (Stop(TIGHTEST, height, steps), Stop(JOINED, height + likelier, int(looser.stats["steps"])))

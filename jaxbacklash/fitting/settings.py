@@ -59,8 +59,6 @@ remembers, and with one."""
 ROUGHLY, CLOSELY = 0.3, 1e-2
 """How near to the minimum a fit on the way comes, and the last one [ln L]: half the square of the standard errors by which a
 parameter may be off."""
-UNKEPT = 0.1
-"""Share of what a step promises near a minimum that it may fail to keep: on records of 4 to 30 s less than a thousandth."""
 SOFT, NARROWEST = 0.03, 1e-3
 """Range in which dry friction turns its sign where ties are loose, and the least to which it is narrowed before it turns at once,
 as shares of the speed at which it slides."""
