@@ -11,6 +11,8 @@ from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
 from jaxbacklash.shooting.levenberg import Levenberg, minimise
 from jaxbacklash.shooting.windows import cut
 
+from .hidden import fitter, hidden
+
 SIGMA, DT, WINDOW = 1e-4, 0.004, 0.048
 OMEGA, ZETA = 25.0, 0.02
 
@@ -103,3 +105,17 @@ def begun(record):
     """A problem and where to begin it."""
     problem, _ = shooting(record)
     return problem, first_guess(problem)
+
+
+def test_no_law_is_stiffer_than_a_step_of_the_integration_follows():
+    """Dahl's law on a link that dry friction holds: its stiffness may grow as far as a Runge-Kutta step is stable, no further."""
+    record, rig, _, _ = hidden("coulomb_joint", "multisine", 5, 4.0, Tc=4.5)
+    own = fitter(record, rig.inertia)
+    alone = own.fit_model({})
+    step = 0.5 * float(own.windows.panel)
+    problem, free = own.problem({"dahl": jb.Dahl(4.5, 4.5e3)}, alone.system)
+    most = dict(zip(free, 1.0 + problem.upper))
+    assert 0.5 < most["dahl.sigma"] * 4.5e3 * step**2 / rig.inertia < 2.8**2
+    assert np.isinf(most["stiffness"])
+    assert np.isinf(most["dahl.Fc"])
+    assert np.isfinite(own.fit_model({"dahl": jb.Dahl(4.5, 3e6)}, alone).log_evidence)

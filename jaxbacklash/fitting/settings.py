@@ -120,8 +120,6 @@ MEASURING = 2.0
 SEEN = 10.0
 """What the weak form shows of a torque by chance where nothing is missing, at most: fall of its sum of squares, in units of its
 rows' variance. What shows less is neither tuned nor held against the trajectory."""
-PUSH = 0.3
-"""Share of a law's torque at its guess that is put on the link first."""
 ALIKE = 0.01
 """Share of a torque, squared, that the model cannot make up for by itself: with less it is no torque of its own."""
 

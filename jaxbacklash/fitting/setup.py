@@ -25,7 +25,7 @@ from ..regression.force_loop import read_loop
 from ..shooting.problem import Problem, Unknowns
 from ..shooting.windows import Windows
 from ..system import System, observe
-from .settings import NEWTON, PERIOD, ROUNDING, UNLIKE_A_LOOP
+from .settings import NEWTON, PERIOD, ROUNDING, STABLE, UNLIKE_A_LOOP
 from .stick_slip import march, place, sticks_and_slips
 
 MODELS = ("joint", "linear", "free")
@@ -220,8 +220,13 @@ def _check_ports(system: System) -> None:
 
 
 def make_problem(system: System, windows: Windows, free: Sequence[str], *, tie: float = 0.0) -> Problem:
-    """The shooting problem with the named parameters free, in units of their present size."""
+    """The shooting problem with the named parameters free, in units of their present size.
+
+    A law's stiffness stays below that with which the link would swing faster than a step of the integration can follow: a law of
+    friction that gives hardly at all before it slips would be integrated into anything.
+    """
     described, present = specs(system), values(system)
+    stiffest = float(system.reduced_inertia) * (STABLE / (0.5 * float(windows.panel))) ** 2
     names = list(described)
     base = ravel(system)
     directions = np.zeros((base.size, len(free)))
@@ -231,7 +236,8 @@ def make_problem(system: System, windows: Windows, free: Sequence[str], *, tie: 
         scale = abs(present[name]) or spec.scale or 1.0
         directions[names.index(name), j] = scale
         lower[j] = (spec.lower - present[name]) / scale
-        upper[j] = (spec.upper - present[name]) / scale
+        most = stiffest if "." in name and spec.unit == "N m/rad" else np.inf
+        upper[j] = (min(spec.upper, max(most, present[name])) - present[name]) / scale
     shrink = np.array([described[name].positive and present[name] > 0 for name in free], dtype=bool)
     return Problem(
         windows,
