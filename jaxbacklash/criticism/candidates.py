@@ -168,7 +168,7 @@ def form_gain(builder: ModelBuilder, model: FittedModel, name: str, form: Abstra
     problem, _ = builder.problem(builder.effects(model), model.system, extra=[f"{name}.{n}" for n in freed])
     information, score, _ = builder.sensitivities(tied(problem, model.tie), model.unknowns)
     q = len(model.free)
-    gain = _gain(information[: q + len(freed), : q + len(freed)], score[: q + len(freed)], q)[1]
+    gain = predicted_gain(information[: q + len(freed), : q + len(freed)], score[: q + len(freed)], q)[1]
     return gain / model.deflation - len(freed) * float(np.log(builder.record.samples))
 
 
@@ -198,7 +198,7 @@ class _Score:
         information, score, scales = self.told
         q, present = len(self.model.free), self.model.value
         index = [*range(q), *(q + j for j, (other, _) in enumerate(self.columns) if other in names)]
-        step, gain = _gain(information[np.ix_(index, index)], score[index], q)
+        step, gain = predicted_gain(information[np.ix_(index, index)], score[index], q)
         step = step * scales[index]
         own = dict(zip([column for column in self.columns if column[0] in names], step[q:]))
         joint = {n: present[n] + float(size) for n, size in zip(self.model.free, step)}
@@ -214,7 +214,7 @@ class _Score:
         return [Candidate(n, e, gain / self.model.deflation, share, joint) for n, e in zip(names, effects)]
 
 
-def _gain(information: np.ndarray, score: np.ndarray, q: int) -> tuple[np.ndarray, float]:
+def predicted_gain(information: np.ndarray, score: np.ndarray, q: int) -> tuple[np.ndarray, float]:
     """Step of all columns, and the fall of twice the cost beyond what the first ``q`` bring by themselves."""
     if not (np.all(np.isfinite(information)) and np.all(np.isfinite(score))):
         return np.zeros(score.size), 0.0  # a trajectory that runs away with it promises nothing

@@ -1,0 +1,79 @@
+r"""How a trajectory answers to torques on its link, and to shifts of what is shown, to first order: many of them at a time.
+
+A torque :math:`s_k \tau_k(t)` on the link, of size :math:`s_k = 0`, is one more parameter of the problem. How the measured
+channels and the ends of windows move with it comes from one run through the windows that carries the tangents of all torques
+along; the normal equations and the elimination of the windows are those of a fit. What comes out is what a score test asks
+(Rao 1948). `jaxbacklash.criticism.force_test` holds laws without a sensitivity at strength zero against a model with it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from ..compiled import kept_jit
+from .chunks import by_chunks
+from .damped_step import solve
+from .multiple_shooting import Window, bare, linearise, per_window, predict_all, shoot, side_by_side
+from .problem import Problem, Unknowns
+
+Array = Any
+TOGETHER = 10
+"""Columns are made in multiples of so many, so that one more compiles nothing."""
+
+
+def information_beside(
+    problem: Problem, unknowns: Unknowns, torques: np.ndarray, shown: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Information and score of a problem's parameters and of K columns more, the windows' unknowns marginalised.
+
+    Parameters
+    ----------
+    problem : with its q free parameters
+    unknowns : where the trajectory is
+    torques : (K, W, P + 1) on the link at panel edges [N m], those that go with a column of size 1
+    shown : (K, W, M C) what the measured channels show more with it
+
+    Returns
+    -------
+    (q + K, q + K) and (q + K,), the parameters first, in units of their scale
+
+    Examples
+    --------
+    >>> information, score = information_beside(problem, unknowns, torques, np.zeros_like(measured)[None])  # doctest: +SKIP
+    """
+    count, q = len(torques), problem.directions.shape[1]
+    more = -count % TOGETHER
+    padded = (np.concatenate([value, np.zeros((more, *value.shape[1:]))]) for value in (torques, shown))
+    lead = (np.ascontiguousarray(np.swapaxes(value, 0, 1)) for value in padded)
+    schur, score = map(np.asarray, _information(problem, unknowns, *lead))
+    return schur[: q + count, : q + count], score[: q + count]
+
+
+@kept_jit
+def _information(problem: Problem, unknowns: Unknowns, torques: Array, shown: Array) -> tuple[Array, Array]:
+    w = problem.windows
+    lead = side_by_side(problem, unknowns), torques, shown
+    further = by_chunks(_answers, (bare(problem), unknowns.theta), lead, w.used)
+    done = solve(linearise(problem, unknowns, shoot(problem, unknowns), further), jnp.asarray(0.0), w.used)
+    return done.schur, done.score
+
+
+def _answers(shared: tuple[Problem, Array], lead: tuple[Window, Array, Array]) -> Array:
+    """How channels and ends of some windows move with each column, (W, K, M C + n)."""
+    (problem, theta), (own, torques, shown) = shared, lead
+    problem = eqx.tree_at(per_window, problem, own.data, is_leaf=lambda v: v is None)
+
+    def run(force: Array) -> Array:
+        pushed = eqx.tree_at(lambda p: p.windows.force, problem, force)
+        predicted = predict_all(pushed, theta, own.start.T, own.local)[0]
+        return jnp.concatenate([predicted.motion, predicted.end], axis=1)
+
+    # The run itself is the same for all columns, and vmap computes it once.
+    push = lambda torque: jax.jvp(run, (problem.windows.force,), (torque,))[1]  # noqa: E731
+    moved = jax.vmap(push, in_axes=1, out_axes=1)(torques)
+    return moved + jnp.pad(shown, ((0, 0), (0, 0), (0, own.start.shape[1])))
