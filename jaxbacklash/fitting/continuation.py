@@ -107,8 +107,11 @@ def continued(
     while (tie := way.next_tie()) is not None:
         begin = way.begin(tie, start)
         at = with_friction_width(tied(problem, tie), speeds, begin)
-        how = Levenberg(limit=BETWEEN if tie < SHARP else LAST, atol=ROUGHLY)
-        way.note(tie, at, minimise(at, begin, how))
+        ended = minimise(at, begin, Levenberg(limit=BETWEEN, atol=ROUGHLY))
+        if tie >= SHARP and way.may_reach(at, ended):
+            ended = minimise(at, ended.value, Levenberg(limit=LAST - BETWEEN, atol=ROUGHLY))
+            ended.stats["steps"] = ended.stats["steps"] + BETWEEN
+        way.note(tie, at, ended)
     best = way.likeliest()
     at, minimum = tied(problem, best), way.ended.get(best)
     if minimum is None or not minimum.stats["stalled"]:
@@ -229,12 +232,23 @@ class _Way:
             return start
         return self.ended[min(self.ended, key=lambda other: abs(np.log(other / tie)))].value
 
+    def may_reach(self, at: Problem, minimum: Minimum) -> bool:
+        """Whether a search that its limit has ended may come to evidence not below the highest so far: whether the cost would at
+        the lowest point of its second-order expansion."""
+        stopped = int(minimum.stats["steps"]) >= BETWEEN and not minimum.stats["stalled"]
+        return stopped and log_evidence(at, minimum) + float(minimum.stats["promise"]) >= self.least
+
     def note(self, tie: float, at: Problem, minimum: Minimum) -> None:
         """Note a fit, and whether the evidence is not below its highest so far."""
-        highest = max((stop.log_evidence for stop in self.stops), default=-np.inf)
+        least = self.least
         self.stops.append(Stop(tie, log_evidence(at, minimum), int(minimum.stats["steps"])))
-        if np.isfinite(self.stops[-1].log_evidence) and self.stops[-1].log_evidence >= highest - FALLEN:
+        if np.isfinite(self.stops[-1].log_evidence) and self.stops[-1].log_evidence >= least:
             self.ended[tie] = minimum
+
+    @property
+    def least(self) -> float:
+        """Log evidence below which a fit has fallen."""
+        return max((stop.log_evidence for stop in self.stops), default=-np.inf) - FALLEN
 
     def likeliest(self) -> float:
         """The likeliest weight of the ties, `TIGHTEST` where that is as likely within chance."""
