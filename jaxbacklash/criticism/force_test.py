@@ -20,7 +20,7 @@ from ..shooting.score_columns import information_beside
 from .candidates import predicted_gain
 from .fitted_model import FittedModel
 from .model_fitter import ModelFitter
-from .perturbed import answered, model_record, panel_edges
+from .perturbed import answered, model_record, panel_edges, parabola
 
 
 class ForceTest:
@@ -51,13 +51,15 @@ class ForceTest:
         less = sum((own_torques([law], self.system, self.along)[0] for law in instead), np.zeros(self.along.t.size))
         torques = own_torques(shapes, self.system, self.along, begun) - less
         found = self.falls(torques)
-        best = max(range(len(shapes)), key=lambda k: found[k][0])
-        while found[best][0] > self.price:
-            rise = self._answer(torques[best], found[best][1])
-            if rise < 0.0:
-                break
-            found[best] = redrawn(*found[best], rise)
-            best = max(range(len(shapes)), key=lambda k: found[k][0])
+        known: set[int] = set()
+        while (best := max(range(len(shapes)), key=lambda k: found[k][0])) not in known and found[best][0] > self.price:
+            gain, size = found[best]
+            half, whole = (self._answer(torques[best], share * size) for share in (0.5, 1.0))
+            if min(half, whole) < 0.0:
+                found[best] = tried(size, half, whole)
+                known.add(best)
+            else:
+                found[best] = redrawn(gain, size, whole)
         gain, size = found[best]
         return gain, shapes[best].scaled(size) if gain > 0.0 and not instead else shapes[best], best
 
@@ -90,6 +92,16 @@ class ForceTest:
         at_edges = np.interp(self.edges, self.along.t, torque)
         problem = eqx.tree_at(lambda p: p.windows.force, self.problem, self.applied + share * at_edges)
         return answered(problem, self.unknowns)[0] - self.still
+
+
+def tried(size: float, half: float, whole: float) -> tuple[float, float]:
+    """Gain and size by the parabola through what the cost has risen by at ``half`` of a size and at the ``whole`` of it, of which
+    one is below zero; by the lower of them where the parabola is lowest beyond twice the size, or nowhere."""
+    slope, curvature = parabola(half, whole, 0.5)
+    best = -slope / curvature if np.isfinite(curvature) and curvature > 0.0 else np.inf
+    if 0.0 < best < 2.0:
+        return -slope * best, size * best
+    return (-2.0 * whole, size) if whole < half else (-2.0 * half, 0.5 * size)
 
 
 def redrawn(gain: float, size: float, rise: float) -> tuple[float, float]:

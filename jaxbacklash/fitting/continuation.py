@@ -233,10 +233,11 @@ class _Way:
         return self.ended[min(self.ended, key=lambda other: abs(np.log(other / tie)))].value
 
     def may_reach(self, at: Problem, minimum: Minimum) -> bool:
-        """Whether a search that its limit has ended may come to evidence not below the highest so far: whether the cost would at
-        the lowest point of its second-order expansion."""
+        """Whether a search that its limit has ended may come to evidence not below the highest so far, if each of the steps that
+        are left brings what the next one promises."""
+        promised = (LAST - BETWEEN) * float(minimum.stats["promise"])
         stopped = int(minimum.stats["steps"]) >= BETWEEN and not minimum.stats["stalled"]
-        return stopped and log_evidence(at, minimum) + float(minimum.stats["promise"]) >= self.least
+        return stopped and log_evidence(at, minimum) + promised >= self.least
 
     def note(self, tie: float, at: Problem, minimum: Minimum) -> None:
         """Note a fit, and whether the evidence is not below its highest so far."""
