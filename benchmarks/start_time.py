@@ -10,6 +10,7 @@
 Every run is a process of its own, so that all counts that a user waits for. Commands: `fit` and `refine` of a record of a few
 seconds, and `demo`. A cold run finds nothing kept, a warm one what the cold one left. Told is the least of the warm runs, in
 seconds on the clock and of the processor: the second is what can be compared on a machine that is busy with something else.
+Python keeps its byte code, as it does where the package is installed. A second table says where a warm `fit` spends its time.
 """
 
 from __future__ import annotations
@@ -126,12 +127,92 @@ def run_command(way: str, words: list[str]) -> None:
 def seconds(way: str, words: list[str], cache: Path) -> tuple[float, float]:
     """Wall time of a fresh process, and its processor's."""
     before, begin = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    command = [sys.executable, "-m", "benchmarks.start_time", "--way", way, "--", *words]
-    ran = subprocess.run(command, env=os.environ | {"JAXBACKLASH_CACHE": str(cache)}, capture_output=True, text=True)
+    _fresh(["--way", way, "--", *words], cache)
     spent, after = time.perf_counter() - begin, resource.getrusage(resource.RUSAGE_CHILDREN)
-    if ran.returncode:
-        raise SystemExit(f"{way}, {' '.join(words)}: {ran.stderr.strip()[-2000:]}")
     return spent, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def _fresh(words: list[str], cache: Path) -> str:
+    """This module in a process of its own: what it says on stderr."""
+    own = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    command = [sys.executable, "-m", "benchmarks.start_time", *words]
+    ran = subprocess.run(command, env=own | {"JAXBACKLASH_CACHE": str(cache)}, capture_output=True, text=True)
+    if ran.returncode:
+        raise SystemExit(f"{' '.join(words)}: {ran.stderr.strip()[-2000:]}")
+    return ran.stderr
+
+
+def tell_stages(begun: float, words: list[str]) -> None:
+    """`fit` in this process, and on stderr when each of its stages ended, in seconds since ``begun`` by the system's clock."""
+    reached: list[tuple[str, float, float]] = []
+
+    def note(stage: str) -> None:
+        reached.append((stage, time.time() - begun, time.process_time()))
+
+    def ended(stage: str, function: Any) -> Any:
+        def call(*args: Any, **more: Any) -> Any:
+            found = function(*args, **more)
+            note(stage)
+            return found
+
+        return call
+
+    def imported(name: str, module: Any) -> None:
+        note(name)
+        if name == "the fit's modules":
+            module.fit_records = ended("the fit", module.fit_records)
+            module.find_causes = ended("causes of misfit", module.find_causes)
+            module.result_of = ended("the cross-check by skeletons", module.result_of)
+
+    note("Python")
+    import importlib.util
+
+    from jaxbacklash import cli
+    from jaxbacklash.commands import reading
+
+    note("the parser")
+    reading.Reading.record = ended("the record", reading.Reading.record)
+    whole = {"jax": "the command's words and jax", "jaxbacklash.commands.fit": "the fit's modules"}
+
+    class Finder:
+        """Says when a module has been loaded."""
+
+        def find_spec(self, name: str, path: Any = None, target: Any = None) -> Any:
+            if name not in whole:
+                return None
+            stage = whole.pop(name)
+            found = importlib.util.find_spec(name)
+            loader: Any = found.loader if found else None
+            load = loader.exec_module
+            loader.exec_module = lambda module: (load(module), imported(stage, module))
+            return found
+
+    sys.meta_path.insert(0, Finder())  # type: ignore[arg-type]
+    sys.argv = ["jaxbacklash", *words]
+    try:
+        cli.main()
+    finally:
+        note("what is printed")
+        print("stages", *(f"{stage}:{at:.4f}:{spent:.4f}" for stage, at, spent in reached), sep="|", file=sys.stderr)
+
+
+def where(words: list[str], runs: int, cache: Path) -> None:
+    """The table of a warm fit's stages: the median over the runs of each."""
+    seconds(WAYS[0], words, cache)
+    stages: dict[str, list[tuple[float, float]]] = {}
+    for _ in range(runs):
+        begun, last, used = time.time(), 0.0, 0.0
+        said = _fresh(["--begun", repr(begun), "--", *words], cache)
+        whole = time.time() - begun
+        for told in next(line for line in said.splitlines() if line.startswith("stages|")).split("|")[1:]:
+            stage, at, spent = told.split(":")
+            stages.setdefault(stage, []).append((float(at) - last, float(spent) - used))
+            last, used = float(at), float(spent)
+        stages.setdefault("the end of the process", []).append((whole - last, 0.0))
+    print(f"\nWhere a warm fit spends its time, median of {runs} runs, until the end of{'s':>20}{'(processor)':>12}")
+    for stage, spent in stages.items():
+        clock, own = (sorted(column)[len(spent) // 2] for column in zip(*spent))
+        print(f"  {stage:<79}{clock:9.2f}{own:12.2f}", flush=True)
 
 
 def table(commands: dict[str, list[str]], ways: tuple[str, ...], runs: int, folder: Path) -> None:
@@ -156,11 +237,14 @@ def main() -> None:
     parser.add_argument("--tiny", action="store_true", help="one command, two ways, one warm run")
     parser.add_argument("--runs", type=int, default=5, help="warm runs")
     parser.add_argument("--way", choices=WAYS, help=argparse.SUPPRESS)
+    parser.add_argument("--begun", type=float, help=argparse.SUPPRESS)
     parser.add_argument("--commands", nargs="+", choices=("fit", "refine", "demo"), default=("fit", "refine", "demo"))
     parser.add_argument("words", nargs="*", help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.way:
         return run_command(given.way, given.words)
+    if given.begun:
+        return tell_stages(given.begun, given.words)
     # A run of a command loads none of this.
     from benchmarks.fit_speed import RIG, make_record
     from jaxbacklash.records import write_record
@@ -178,6 +262,8 @@ def main() -> None:
         chosen = ("fit",) if given.tiny else given.commands
         ways, runs = (WAYS[:2], 1) if given.tiny else (WAYS, given.runs)
         table({name: commands[name] for name in chosen}, ways, runs, folder)
+        if "fit" in chosen:
+            where(commands["fit"], runs, folder / "stages")
 
 
 if __name__ == "__main__":

@@ -262,7 +262,7 @@ def test_atoms_see_means_without_knowing_it():
         moved = 2 * np.pi * (0.2 + 0.5 * t) * -(np.sin(phase) + 0.6 * np.sin(3 * phase))
         scale = np.max(np.abs(found[rate][1]))
         np.testing.assert_allclose(atoms.of(moved), found[rate][1], atol=1e-4 * scale)
-        assert sum(orders[0].nnz for *_, orders in atoms._levels) < 9 * 700
+        assert sum(orders.column.size for *_, orders in atoms._levels) < 9 * 700
     for few, many in zip(found[640.0], found[10240.0]):
         np.testing.assert_allclose(few, many, atol=1e-3 * np.max(np.abs(many)))  # what a mean does to an atom off its ridge
 

@@ -22,6 +22,10 @@ def run(app: Any) -> None:
     # Much is loaded, most of it stays, and a command ends soon: looking through all of it for garbage is a fifth of the time.
     gc.set_threshold(100_000, 50, 100)
     atexit.register(gc.freeze)  # nor once more when all of it goes anyway, which took longer than a fit
+    # The parser reads the signature of every command that is declared, which takes as long as reading a record.
+    every = app.registered_commands
+    asked = [one for one in every if (one.name or one.callback.__name__.replace("_", "-")) in sys.argv[1:2]]
+    app.registered_commands = asked or every
     try:
         code = app(standalone_mode=False)  # the exit code where the parser ended the command, after --help
         if sys.stdout is not None:  # it was closed before the command began
@@ -33,4 +37,6 @@ def run(app: Any) -> None:
         code = say(*told(error))
         if isinstance(error, OSError | SystemExit):
             let_go_of_output()
+    finally:
+        app.registered_commands = every
     sys.exit(code if isinstance(code, int) else 0)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from ..signals import chi_square
 from .settings import BEYOND, EXPLAINED, FEW, NEARLY, NOISE_KNOWN, RARE, SURE
 
 if TYPE_CHECKING:
@@ -57,8 +58,6 @@ def joined(tied: bool, system: Any) -> bool:
 
 def misses(score: Score, states: int) -> bool:
     """The same of one record; ``states`` (2 for position and speed) begin every window anew and take so much of its freedom."""
-    from scipy.special import chdtri  # heavy to load, and not needed to fit
-
     ratio = np.asarray(score.window_rms, dtype=float)
     ratio = ratio[np.isfinite(ratio)]
     if ratio.size == 0:
@@ -67,6 +66,6 @@ def misses(score: Score, states: int) -> bool:
     own = ratio / (1.0 + NOISE_KNOWN)
     # The median of K normal values of standard deviation s has one of sqrt(pi/2) s / sqrt(K), and s is 1 / sqrt(2 freedom).
     spread = np.sqrt(0.5 * np.pi / (2.0 * freedom * ratio.size))
-    limit = np.sqrt(chdtri(freedom, RARE) / freedom)
+    limit = np.sqrt(chi_square(freedom, RARE) / freedom)
     beyond = int(np.sum(own > limit))
     return bool(np.median(own) > 1.0 + SURE * spread or beyond > max(FEW, BEYOND * ratio.size))

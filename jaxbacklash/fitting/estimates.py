@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from statistics import NormalDist
 from typing import Any
 
 import numpy as np
-from scipy.special import ndtri
 
 from ..parameters import per_kt, specs, unit_text, values
 from ..quasistatic import slow_reading, why_not
@@ -24,10 +24,10 @@ FOUND, ONE_SIDED, UNDETERMINED = "found", "one-sided", "not determined"
 
 def two_sided(confidence: float) -> float:
     """Standard deviations within which a normal number lies with a probability ``confidence``."""
-    return float(ndtri(0.5 * (1.0 + confidence)))
+    return NormalDist().inv_cdf(0.5 * (1.0 + confidence))
 
 
-NORMAL_95, BELOW_95 = two_sided(CONFIDENCE), float(ndtri(CONFIDENCE))
+NORMAL_95, BELOW_95 = two_sided(CONFIDENCE), NormalDist().inv_cdf(CONFIDENCE)
 BOUNDED = ("damping", "backlash")
 """Parameters that may be zero, of which an upper bound is worth telling where they are not determined."""
 

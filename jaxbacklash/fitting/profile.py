@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 
 import equinox as eqx
 import numpy as np
-from scipy.optimize import brentq
 
 from ..shooting.levenberg import Levenberg, minimise
 from ..shooting.problem import Problem, Unknowns
@@ -53,6 +52,8 @@ def interval(problem: Problem, unknowns: Unknowns, j: int, stderr: float) -> tup
         moved = eqx.tree_at(lambda p: p.base, held, base)
         start = Unknowns(unknowns.theta * others, unknowns.starts, unknowns.coefficients)
         return 2.0 * float(minimise(moved, start, solver).stats["cost"])
+
+    from scipy.optimize import brentq  # a seventh of a second to import, and few fits need it
 
     least = cost(0.0)
 

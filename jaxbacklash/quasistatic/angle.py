@@ -11,7 +11,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import BSpline
+
+from ..signals import BSplines
 
 PIECES = (0, 3, 6, 12, 24)
 """Pieces of the spline that are tried; 0 is a straight line."""
@@ -47,7 +48,7 @@ class Curve:
             inner = np.linspace(0.0, 1.0, self.pieces + 1)
             knots = np.concatenate([np.zeros(3), inner, np.ones(3)])
             # A constant and a line are sums of all splines: two of these would be one too many each.
-            columns += list(BSpline.design_matrix(at, knots, 3).toarray().T[1:-1])
+            columns += list(BSplines(at, knots, 3).of(np.eye(knots.size - 4)).T[1:-1])
         for wave in self.waves:
             turn = 2.0 * np.pi * angle / wave.period
             columns += [np.cos(turn), np.sin(turn)]

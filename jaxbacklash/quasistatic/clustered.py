@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import stdtrit
 
 MOST_GROUPS = 120
 """Groups that are left out in turn; of more, neighbours are left out together, which only makes the interval more careful."""
@@ -84,6 +83,8 @@ def clustered(rows: np.ndarray, answer: np.ndarray, weights: np.ndarray, group: 
 
 def quantile(freedom: float) -> float:
     """The factor of a standard error in a 95 % interval, by Student's t."""
+    from scipy.special import stdtrit  # heavy to load, and only slow records need it
+
     return float(stdtrit(max(1.0, freedom), 0.975))
 
 

@@ -14,13 +14,13 @@ from typing import Any
 
 import equinox as eqx
 import numpy as np
-from scipy import optimize
 
 from ..mechanics import AbstractEffect, Instant
 from ..pointwise import exerted
 from ..records import Record
 from ..signals import choose_intervals, fit_spline, span
 from .averaged import Averaged
+from .least import least_between
 
 ROOM = 500_000
 """Samples of several plays that are looked at together at most."""
@@ -105,7 +105,7 @@ def estimate(
         )
         k = int(np.argmin(misfits))
         low, high = grid[max(k - 1, 0)], grid[min(k + 1, grid.size - 1)]
-        half = float(optimize.minimize_scalar(lambda h: solve(h)[0], bounds=(low, high), method="bounded").x)
+        half = least_between(lambda h: solve(h)[0], low, high, 1e-3 * (high - low))
     misfit, solution = solve(half)
     # Strengths relative to the contact stiffness or to the damping need these to be known.
     weak.joint = max(float(solution[1]), 1e-9) if spring else 1.0, max(float(solution[0]), 1e-9)

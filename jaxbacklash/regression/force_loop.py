@@ -9,10 +9,9 @@ searched, the rest is least squares. Inertia and damping are left to the fit by 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from statistics import NormalDist
 
 import numpy as np
-from scipy import optimize
-from scipy.special import ndtri
 
 from ..records import Record
 
@@ -77,7 +76,9 @@ def read_loop(record: Record, most: int = 1500) -> Loop:
         found += [(solve(share * width, z)[0], width, share * width) for share in np.linspace(0.02, 0.95, 16)]
     _, width, half = min(found)
     fine = {"xatol": 1e-4 * width, "fatol": 1e-6, "maxfev": 120}
-    polished = optimize.minimize(at, (width, half), method="Nelder-Mead", options=fine)
+    from scipy.optimize import minimize  # a seventh of a second to import, and only records of a force need it
+
+    polished = minimize(at, (width, half), method="Nelder-Mead", options=fine)
     width, half = (float(v) for v in polished.x)
     share, stiffness = solve(half, stop(x, width))
     largest = float(np.quantile(np.abs(force), 0.99))
@@ -117,7 +118,7 @@ def read_plateau(x: np.ndarray, force: np.ndarray) -> Plateau:
     if not widths:
         return Plateau(None, None, 0)
     # Of normal values: the standard deviation from the median deviation, and from it that of their median.
-    spread = float(np.median(np.abs(np.asarray(widths) - np.median(widths)))) / float(ndtri(0.75))
+    spread = float(np.median(np.abs(np.asarray(widths) - np.median(widths)))) / NormalDist().inv_cdf(0.75)
     return Plateau(float(np.median(widths)), float(np.sqrt(0.5 * np.pi / len(widths))) * spread, len(widths))
 
 

@@ -14,14 +14,13 @@ from typing import Any
 
 import equinox as eqx
 import numpy as np
-from scipy.interpolate import BSpline
 
 from ..compiled import lane
 from ..errors import BadInput
 from ..records import Record
 from ..records.force import force_edges, way
 from ..sharing import sharing
-from ..signals import DEGREE, NEGLIGIBLE, SPAN, choose_intervals, fit_spline, knots, noise_level, noise_of_differences
+from ..signals import DEGREE, NEGLIGIBLE, SPAN, choose_intervals, curve, fit_spline, knots, noise_level, noise_of_differences
 from .chunks import CHUNK
 from .lengths import LONGEST_PANEL
 from .torque_input import channel_noise, held_basis, torque_noise
@@ -228,10 +227,10 @@ def _basis(length: int, every: int, intervals: int, panel: float) -> np.ndarray:
         return np.zeros((DEGREE + 1, edges.size, 0))
     spacing = edges[-1] / intervals
     count = intervals + DEGREE
-    splines = BSpline(knots(0.0, spacing, count), np.eye(count), DEGREE)
     # The last edge belongs to the next window's first interval; just inside it the value is the same.
     inside = np.minimum(edges, edges[-1] * (1.0 - 1e-12))
-    return np.stack([splines(inside, nu=order) for order in range(DEGREE + 1)])
+    own = knots(0.0, spacing, count), np.eye(count), DEGREE
+    return np.stack([curve(inside, *own, order) for order in range(DEGREE + 1)])
 
 
 def _shown(length: int, intervals: int, needed: int) -> np.ndarray:

@@ -8,9 +8,13 @@ from .analytic import low_passed as low_passed
 from .bandwidth import highest_frequency as highest_frequency
 from .between import edges_between as edges_between
 from .between import way_between as way_between
+from .bsplines import BSplines as BSplines
+from .bsplines import curve as curve
 from .bump import Bump as Bump
+from .chi_square import chi_square as chi_square
 from .cycles import CycleSpline as CycleSpline
 from .cycles import SlowCurve as SlowCurve
+from .fourier import fast_length as fast_length
 from .morlet import Atoms as Atoms
 from .morlet import Morlet as Morlet
 from .morlet import Scalogram as Scalogram

@@ -12,10 +12,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft
-from scipy.ndimage import uniform_filter1d
 
 from .cycles import CycleSpline, SlowCurve
+from .fourier import fast_length
 from .smoothing import choose_intervals, fit_spline
 
 END_CYCLES = 3.0
@@ -39,11 +38,11 @@ def analytic(values: np.ndarray) -> np.ndarray:
     pad = max(1, min(count // 2 - 2, max(16, count // 8)))
     left, right = _mirrored(values - mean, pad)[::-1], _mirrored(values[::-1] - mean, pad)
     long = np.concatenate([left, values - mean, right])
-    length = fft.next_fast_len(long.size)
-    spectrum = fft.fft(long, length)
+    length = fast_length(long.size)
+    spectrum = np.fft.fft(long, length)
     spectrum[1 : (length + 1) // 2] *= 2.0
     spectrum[length // 2 + 1 :] = 0.0
-    return fft.ifft(spectrum)[pad : pad + count] + mean
+    return np.fft.ifft(spectrum)[pad : pad + count] + mean
 
 
 def _mirrored(values: np.ndarray, pad: int) -> np.ndarray:
@@ -125,7 +124,8 @@ def _rising(t: np.ndarray, phase: np.ndarray, turns: float) -> np.ndarray:
     """The phase over a running mean of a few average cycles, made to rise."""
     length = int(np.clip(round(2.0 * t.size / turns), 3, max(3, t.size // 8)))
     padded = np.concatenate([2 * phase[0] - phase[length:0:-1], phase, 2 * phase[-1] - phase[-2 : -length - 2 : -1]])
-    return _monotone(uniform_filter1d(padded, length)[length : length + t.size])
+    total = np.concatenate([[0.0], np.cumsum(padded)])[length - length // 2 :]
+    return _monotone((total[length : length + t.size] - total[: t.size]) / length)
 
 
 def _monotone(phase: np.ndarray) -> np.ndarray:

@@ -19,7 +19,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
 from scipy.linalg import solveh_banded
 
 WAYS = ("straight", "held", "curved")
@@ -68,6 +67,8 @@ def edges_between(force: np.ndarray, every: int, way: str) -> np.ndarray:
         pieces = np.repeat(force[:-1], every)
         moments = 0.5 * (np.append(pieces, 0.0) + np.append(0.0, pieces))
     else:
+        from scipy.interpolate import make_interp_spline  # a sixth of a second to import, and few records need it
+
         curve = make_interp_spline(np.arange(force.size), force, k=5)
         nodes, weights = np.polynomial.legendre.leggauss(4)
         shares = 0.5 * (nodes + 1.0)

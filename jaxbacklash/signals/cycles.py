@@ -10,9 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import BSpline
-from scipy.linalg import cho_solve_banded, cholesky_banded
 
+from .bsplines import BSplines, LeastSquares, curve
 from .smoothing import DEGREE
 
 MOST_ROWS = 200_000
@@ -27,7 +26,7 @@ class SlowCurve:
     coefficients: np.ndarray
 
     def __call__(self, t: np.ndarray, order: int = 0) -> np.ndarray:
-        return BSpline(self.knots, self.coefficients, DEGREE)(t, nu=order)
+        return curve(t, self.knots, self.coefficients, DEGREE, order)
 
 
 class CycleSpline:
@@ -52,27 +51,20 @@ class CycleSpline:
         after = inner[-1] + last * np.arange(1, max(reach, 0) + DEGREE + 1)
         self.knots = np.concatenate([before, inner, after])
         self._group = max(1, -(-t.size // MOST_ROWS))
-        self._samples = t.size
-        at = self._pooled(t)
-        self._design = BSpline.design_matrix(at, self.knots, DEGREE).tocsr()
-        self._transposed = self._design.T.tocsr()
-        count = self._design.shape[1]
-        gram = (self._transposed @ self._design).todia()
-        bands = np.zeros((DEGREE + 1, count))
-        for offset, diagonal in zip(gram.offsets, gram.data):
-            if 0 <= offset <= DEGREE:
-                bands[DEGREE - offset] = np.pad(diagonal, (0, max(0, count - diagonal.size)))[:count]
+        self._t, self._samples = t, t.size
+        splines = BSplines(self._pooled(t), self.knots, DEGREE)
         # The outermost splines may hold few samples: a whisper of ridge keeps them defined.
-        bands[DEGREE] += 1e-9 * np.median(bands[DEGREE])
-        self._factor = cholesky_banded(bands)
+        self._through = LeastSquares(splines, 1e-9 * float(np.median(splines.gram[-1])))
 
     def fit(self, values: np.ndarray) -> SlowCurve:
         """The slow curve through real or complex samples (N,)."""
-        right = self._transposed @ self._pooled(values)
-        if np.iscomplexobj(right):
-            both = cho_solve_banded((self._factor, False), np.stack([right.real, right.imag], axis=1))
-            return SlowCurve(self.knots, both[:, 0] + 1j * both[:, 1])
-        return SlowCurve(self.knots, cho_solve_banded((self._factor, False), right))
+        return SlowCurve(self.knots, self._through(self._pooled(values)))
+
+    def smoothed(self, values: np.ndarray) -> np.ndarray:
+        """The slow curve through real or complex samples (N,), at the samples."""
+        if self._group > 1:
+            return self.fit(values)(self._t)
+        return self._through.splines.of(self._through(values))
 
     def _pooled(self, values: np.ndarray) -> np.ndarray:
         if self._group == 1:

@@ -14,7 +14,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft, sparse
+
+from .fourier import fast_length
 
 REACH = 4.5
 """Standard deviations of the Gaussian at which an atom is cut off: 4e-5 of its peak."""
@@ -81,8 +82,8 @@ def scalogram(
         length = min(step, t.size - begin)
         low, high = begin - reach, begin + length + reach
         piece = np.pad(values[max(low, 0) : min(high, t.size)], (max(-low, 0), max(high - t.size, 0)))
-        few = fft.next_fast_len(-(-piece.size // stride))
-        spectrum = fft.fft(piece, few * stride)
+        few = fast_length(-(-piece.size // stride))
+        spectrum = np.fft.fft(piece, few * stride)
         spacing = 2.0 * np.pi / (few * stride * dt)
         shown = slice(reach // stride, reach // stride + -(-length // stride))
         for row, frequency in enumerate(frequencies):
@@ -95,7 +96,7 @@ def scalogram(
             folded = np.zeros(-(-gained.size // few) * few, complex)
             folded[: gained.size] = gained
             folded = np.roll(folded.reshape(-1, few).sum(axis=0), first % few)
-            out[row, begin // stride : begin // stride + shown.stop - shown.start] = (2.0 / stride) * fft.ifft(folded)[shown]
+            out[row, begin // stride : begin // stride + shown.stop - shown.start] = (2.0 / stride) * np.fft.ifft(folded)[shown]
     return Scalogram(t[::stride], frequencies, out, wavelet)
 
 
@@ -121,7 +122,7 @@ class Atoms:
         halvings = np.floor(np.log2(1.0 / (PER_CYCLE * dt * frequencies)))
         levels = np.clip(halvings, 0, int(np.log2(t.size)) - 3).astype(int)
         self._points = centres.size
-        self._levels: list[tuple[int, np.ndarray, list[sparse.csr_array]]] = []
+        self._levels: list[tuple[int, np.ndarray, _Rows]] = []
         for level in np.unique(levels):
             rows, count = np.flatnonzero(levels == level), t.size >> level
             first, spacing = t[0] + 0.5 * dt * ((1 << level) - 1), dt * (1 << level)
@@ -137,7 +138,7 @@ class Atoms:
             for _ in range(level - at):
                 values = 0.5 * (values[: values.size // 2 * 2 : 2] + values[1::2])
             at = level
-            out[rows] = orders[order] @ values
+            out[rows] = orders.of(values, order)
         return out
 
 
@@ -149,19 +150,31 @@ def _atoms(
     frequencies: np.ndarray,
     widths: np.ndarray,
     gain: np.ndarray,
-) -> list[sparse.csr_array]:
-    """Matrices (M, count) that make amplitudes of means over dt of a signal, of its first and of its second derivative."""
+) -> _Rows:
+    """What makes amplitudes of means over dt of a signal, of its first and of its second derivative."""
     first = np.clip(np.ceil((centres - REACH * widths - t0) / dt).astype(int), 0, count - 1)
     last = np.clip(np.floor((centres + REACH * widths - t0) / dt).astype(int), 0, count - 1)
     sizes = last - first + 1
     ends = np.cumsum(sizes)
     row = np.repeat(np.arange(centres.size), sizes)
-    column = (np.arange(ends[-1]) - np.repeat(ends - sizes, sizes) + np.repeat(first, sizes)).astype(np.int32)
+    column = np.arange(ends[-1]) - np.repeat(ends - sizes - first, sizes)
     s, w = widths[row], 2.0 * np.pi * frequencies[row]
     tau = t0 + dt * column - centres[row]
     values = np.exp(-0.5 * (tau / s) ** 2 - 1j * w * tau)
     values *= 2.0 * dt * gain[row] / (s * np.sqrt(2.0 * np.pi))
     slope = tau / s**2 + 1j * w
-    shape, pointers = (centres.size, count), np.concatenate([[0], ends]).astype(np.int32)
-    every = (values, values * slope, values * (slope**2 - 1.0 / s**2))
-    return [sparse.csr_array((data, column, pointers), shape=shape) for data in every]
+    return _Rows(column, ends - sizes, (values, values * slope, values * (slope**2 - 1.0 / s**2)))
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """Rows of weights on samples next to one another: ``column`` the sample of each weight, ``begins`` where the weights of a row
+    begin, ``orders`` the weights for a signal, its first and its second derivative."""
+
+    column: np.ndarray
+    begins: np.ndarray
+    orders: tuple[np.ndarray, ...]
+
+    def of(self, values: np.ndarray, order: int) -> np.ndarray:
+        """Sum of weights times samples of each row, (M,)."""
+        return np.add.reduceat(self.orders[order] * values[self.column], self.begins)

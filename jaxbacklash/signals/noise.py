@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import gammaincinv
 
+from .chi_square import chi_square
 from .remembered import remembered
 from .resolution import rounding_noise
 from .smoothing import choose_intervals, fit_spline, span
@@ -78,7 +78,7 @@ def _left(t: np.ndarray, values: np.ndarray, window: float | None) -> tuple[floa
     pieces = max(1, t.size // length)
     rows = residual[: pieces * length].reshape(pieces, -1)
     energy = np.sum(rows**2, axis=1)
-    level = fitted.noise if pieces < FEW_PIECES else float(np.sqrt(np.median(energy) / _chi2_median(length * per_sample)))
+    level = fitted.noise if pieces < FEW_PIECES else float(np.sqrt(np.median(energy) / chi_square(length * per_sample, 0.5)))
     quiet = rows[energy <= QUIET_ENOUGH * np.median(energy)]
     return max(level, rounding_noise(values)), tuple(map(float, _correlations(quiet))), quiet.size, spacing
 
@@ -112,9 +112,7 @@ def noise_of_differences(values: np.ndarray) -> float:
     pieces = max(1, differences.size // PIECE)
     energy = np.mean(differences[: pieces * PIECE].reshape(pieces, -1) ** 2, axis=1) / 70.0
     freedom = PIECE / OVERLAP
+    from scipy.special import gammaincinv  # heavy to load, and only records of a force need it
+
     expected = 2.0 * float(gammaincinv(0.5 * freedom, QUIET)) / freedom
     return float(np.sqrt(np.quantile(energy, QUIET) / expected))
-
-
-def _chi2_median(freedom: float) -> float:
-    return 2.0 * float(gammaincinv(0.5 * freedom, 0.5))

@@ -8,12 +8,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
-from scipy.interpolate import BSpline
-from scipy.linalg import cho_solve_banded, cholesky_banded
 
+from .bsplines import BSplines, LeastSquares
 from .remembered import remembered
 
 DEGREE = 5
@@ -39,7 +37,9 @@ class SmoothMotion:
 
     def __call__(self, t: np.ndarray, order: int = 0) -> np.ndarray:
         """Value or derivative of the given order at times ``t`` [s]."""
-        return BSpline(knots(self.t0, self.spacing, self.coefficients.size), self.coefficients, DEGREE)(t, nu=order)
+        # The slopes of a sum of splines with equal knots are differences of its coefficients.
+        slopes = np.diff(self.coefficients, order) / self.spacing**order
+        return BSplines.equal(t, self.t0, self.spacing, slopes.size, DEGREE - order).of(slopes)
 
     def refined(self, parts: int) -> np.ndarray:
         """Coefficients of the same spline with every interval divided into ``parts``; the first ones are of the same start."""
@@ -73,34 +73,24 @@ def fit_spline(t: np.ndarray, values: np.ndarray, t0: float, spacing: float) -> 
     """
     dt = (t[-1] - t[0]) / (t.size - 1)
     factored = _least_squares if t.size <= KEPT else _least_squares.__wrapped__
-    design, transposed, factor = factored(t.size, round((t[0] - t0) / dt, 6), round(spacing / dt, 9))
-    count = design.shape[1]
-    coefficients = cho_solve_banded((factor, False), transposed @ values)
-    residual = values - design @ coefficients
-    noise = float(np.sqrt(np.sum(residual**2) / max(t.size - count, 1)))
+    through = factored(t.size, round((t[0] - t0) / dt, 6), round(spacing / dt, 9))
+    coefficients = through(values)
+    residual = values - through.splines.of(coefficients)
+    noise = float(np.sqrt(np.sum(residual**2) / max(t.size - coefficients.size, 1)))
     return SmoothMotion(t0, spacing, coefficients, noise)
 
 
 @lru_cache(maxsize=32)
-def _least_squares(samples: int, first: float, spacing: float) -> tuple[Any, Any, np.ndarray]:
-    """Design matrix, its transpose and the Cholesky factor of the normal equations, all in units of the sample spacing.
+def _least_squares(samples: int, first: float, spacing: float) -> LeastSquares:
+    """The factored normal equations, in units of the sample spacing.
 
     The channels of a record share their sample times, so each spacing is factored once for all of them.
     """
     t = first + np.arange(samples)
     count = int(np.floor(t[-1] / spacing + 1e-9)) + 1 + DEGREE
-    design = BSpline.design_matrix(t, knots(0.0, spacing, count), DEGREE).tocsr()
-    transposed = design.T.tocsr()
-    # Every sample sees the same number of splines, next to one another: the bands are sums over samples.
-    rows = design.data.reshape(samples, DEGREE + 1)
-    leading = design.indices[:: DEGREE + 1]
-    bands = np.zeros((DEGREE + 1, count))
-    for i in range(DEGREE + 1):
-        for j in range(i, DEGREE + 1):
-            bands[DEGREE - (j - i)] += np.bincount(leading + j, rows[:, i] * rows[:, j], count)
+    splines = BSplines.equal(t, 0.0, spacing, count, DEGREE)
     # The last intervals may hold few samples: a whisper of ridge keeps them defined.
-    bands[DEGREE] += 1e-10 * bands[DEGREE].max()
-    return design, transposed, cholesky_banded(bands)
+    return LeastSquares(splines, 1e-10 * float(splines.gram[-1].max()))
 
 
 @remembered

@@ -11,7 +11,6 @@ skeleton (the paper's Figure 14) cuts the axis at 1.27 times the half play. `axi
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import brentq
 
 TRAP = 4.0 / np.pi
 """Where the asymptote cuts the axis, in half plays."""
@@ -34,6 +33,8 @@ def half_play_for(share: float, amplitude: float) -> float:
     """The half play whose describing function at this amplitude is ``share``, 0 to 1: the inverse in h."""
     if not 0.0 <= share <= 1.0:
         raise ValueError(f"share {share:g}: wanted a number from 0 to 1")
+    from scipy.optimize import brentq  # a seventh of a second to import, and a fit's cross-check does without
+
     return float(brentq(lambda h: float(describing_function(amplitude, h)) - share, 0.0, amplitude, xtol=1e-14 * amplitude))
 
 

@@ -85,9 +85,17 @@ def skeleton(
     units = [unit_text(unit, translational=translational, per_inertia=per_inertia) for unit in UNITS]
     tell("Hilbert transform", 0.1)
     by_phase = hilbert_fundamental(motion.t, motion.pace, decaying=not motion.driven)
-    hilbert = _method("hilbert", by_phase, motion, known, units)
+    outside = None if by_phase is None else _outside(by_phase, motion)
+    hilbert = _method("hilbert", by_phase, motion, known, units, outside)
     tell("wavelet transform", 0.4)
-    wavelet = _method("wavelet", wavelet_fundamental(motion.t, motion.pace), motion, known, units, beside=by_phase)
+    by_atoms = wavelet_fundamental(motion.t, motion.pace)
+    if by_atoms is not None and by_phase is not None and outside is not None:
+        # The wavelet's carrier is rough where a sweep is too quick for its atoms; the other then may vouch for the signal.
+        vouched = np.array([np.interp(by_atoms.t, by_phase.t, share) for share in outside])
+        outside = np.minimum(_outside(by_atoms, motion), vouched)
+    elif by_atoms is not None:
+        outside = _outside(by_atoms, motion)
+    wavelet = _method("wavelet", by_atoms, motion, known, units, outside)
     noise = {record.observed_name: motion.noise}
     return Skeletons(record, hilbert, wavelet, per_inertia, translational, _together(hilbert, wavelet), noise, known)
 
@@ -154,16 +162,18 @@ def _method(
     motion: _Motion,
     inertia: float | None,
     units: list[str],
-    *,
-    beside: Fundamental | None = None,
+    outside: np.ndarray | None,
 ) -> Skeleton:
-    """One method: amplitudes along its fundamental, modal curves, masks, inversion, masks again with the play known."""
-    if along is None:
+    """One method: amplitudes along its fundamental, modal curves, masks, inversion, masks again with the play known.
+
+    ``outside`` (2, M) is what `_outside` tells at the fundamental's points.
+    """
+    if along is None or outside is None:
         return _nothing(name, "no oscillation of at least eight cycles was found", units)
     terms = _terms(along, motion)
     mass = inertia or 1.0
     stiffness, damping = modal(terms.position, terms.velocity, terms.torque / mass - terms.acceleration)
-    mixed, wild = _impure(along, motion, beside)
+    mixed, wild = outside[0] > masks.MIXED_DRIVE, outside[1] > masks.APERIODIC
     fast = masks.passes_fast(along, terms.position)
     passing = "the amplitude changes too fast, as past a resonance,"
     drive = "the drive" if motion.driven else "the motion"
@@ -198,26 +208,14 @@ def _method(
     return _judged(base, _doubted(final, missed), missed, motion, inertia, units)
 
 
-def _impure(along: Fundamental, motion: _Motion, beside: Fundamental | None) -> tuple[np.ndarray, np.ndarray]:
-    """Where the drive is mixed and where z does not repeat, (M,) each.
-
-    The wavelet's carrier is rough where a sweep is too quick for its atoms; ``beside`` then may vouch for the signal.
-    """
-    shares = []
-    for other in (along, beside):
-        if other is None:
-            continue
-        level = np.ones(motion.t.size)
-        if not motion.driven:
-            size = np.abs(other.of(motion.z))
-            level = np.interp(motion.t, other.t, np.maximum(size, 1e-6 * float(np.max(size))))
-        pair = (
-            masks.outside(other, motion.t, motion.pace / level, 1) if motion.driven else np.zeros(other.t.size),
-            masks.outside(other, motion.t, motion.smooth / level, masks.HARMONICS, cycles=masks.REPEATS),
-        )
-        shares.append([np.interp(along.t, other.t, share) for share in pair])
-    mixed, wild = np.min(shares, axis=0)
-    return mixed > masks.MIXED_DRIVE, wild > masks.APERIODIC
+def _outside(along: Fundamental, motion: _Motion) -> np.ndarray:
+    """Shares of energy that are not of the fundamental, (2, M): of the drive, and of z, which may have harmonics."""
+    level = np.ones(motion.t.size)
+    if not motion.driven:
+        size = np.abs(along.of(motion.z))
+        level = np.interp(motion.t, along.t, np.maximum(size, 1e-6 * float(np.max(size))))
+    drive = masks.outside(along, motion.t, motion.pace / level, 1) if motion.driven else np.zeros(along.t.size)
+    return np.stack([drive, masks.outside(along, motion.t, motion.smooth / level, masks.HARMONICS, cycles=masks.REPEATS)])
 
 
 def _terms(along: Fundamental, motion: _Motion) -> Terms:

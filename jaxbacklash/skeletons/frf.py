@@ -22,7 +22,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy import optimize
 
 from ..errors import BadInput, NoAnswer
 from ..frames import dataframe, dataset
@@ -179,7 +178,9 @@ def _mode(
         return np.concatenate([weighed.real, weighed.imag])
 
     first = np.concatenate([np.ones(3), np.zeros(6)])
-    found = optimize.least_squares(lambda v: real(model(v)[0] - motion), first, lambda v: real(model(v)[1]), method="lm")
+    from scipy.optimize import least_squares  # a seventh of a second to import
+
+    found = least_squares(lambda v: real(model(v)[0] - motion), first, lambda v: real(model(v)[1]), method="lm")
     jacobian = real(model(found.x)[1])
     bread = np.linalg.inv(jacobian.T @ jacobian)
     scores = jacobian * found.fun[:, None]

@@ -13,7 +13,6 @@ from copy import copy
 from functools import cached_property
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
 
 from ..signals import (
     Atoms,
@@ -189,4 +188,7 @@ def _twice_a_cycle(t: np.ndarray, phase: np.ndarray) -> np.ndarray:
 def _smooth_path(t: np.ndarray, frequency: np.ndarray) -> np.ndarray:
     """The ridge over a running mean of half a cycle or so: its bins leave small waves."""
     spacing = (t[-1] - t[0]) / (t.size - 1)
-    return np.exp(gaussian_filter1d(np.log(frequency), max(0.5 / (np.median(frequency) * spacing), 0.5), mode="nearest"))
+    width = max(0.5 / (float(np.median(frequency)) * spacing), 0.5)
+    reach = int(4.0 * width + 0.5)
+    share = np.exp(-0.5 * (np.arange(-reach, reach + 1) / width) ** 2)
+    return np.exp(np.convolve(np.pad(np.log(frequency), reach, mode="edge"), share / np.sum(share), "valid"))

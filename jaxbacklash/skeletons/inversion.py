@@ -23,8 +23,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import optimize, special
 
+from ..regression.least import least_between
 from .describing_function import dead_zone, describing_function
 from .fundamental import Fundamental
 
@@ -83,7 +83,9 @@ class Inversion:
     @property
     def reach(self) -> float:
         """Half width of a 95 % interval in standard errors: Student's t."""
-        return float(special.stdtrit(max(self.blocks - 1, 1), 0.975))
+        from scipy.special import stdtrit  # heavy to load, and a record that cannot be judged does without
+
+        return float(stdtrit(max(self.blocks - 1, 1), 0.975))
 
 
 def invert(
@@ -120,7 +122,7 @@ def invert(
     grid = peak * np.linspace(0.0, 0.95, 20)
     best = int(np.argmin([misfit(half) for half in grid]))
     low, high = grid[max(best - 1, 0)], grid[min(best + 1, grid.size - 1)]
-    half = float(optimize.minimize_scalar(misfit, bounds=(low, high), method="bounded", options={"xatol": 1e-5 * peak}).x)
+    half = least_between(misfit, low, high, 1e-5 * peak)
     at = middle(half)
     _, solution, residual = regression.solve(terms.deflection(half, at, way))
     jacobian = regression.jacobian(half, at, solution[0], 1e-3 * peak, way)

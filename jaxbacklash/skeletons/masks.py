@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d
 
 from ..signals import CycleSpline
 from .fundamental import Fundamental
@@ -78,8 +77,9 @@ def passes_fast(along: Fundamental, position: np.ndarray) -> np.ndarray:
     """
     level = np.log(np.abs(position) + 1e-12 * float(np.max(np.abs(position))))
     rate = np.gradient(level, along.t) * 2.0 * np.pi / along.omega
-    fast = np.abs(rate - np.median(rate)) > FAST
-    return maximum_filter1d(fast, 2 * round(2.0 * along.windowed) + 1)
+    so_far = np.concatenate([[0], np.cumsum(np.abs(rate - np.median(rate)) > FAST)])
+    at, reach = np.arange(rate.size), round(2.0 * along.windowed)
+    return so_far[np.minimum(at + reach + 1, rate.size)] > so_far[np.maximum(at - reach, 0)]
 
 
 def outside(along: Fundamental, t: np.ndarray, values: np.ndarray, harmonics: int, *, cycles: float = 1.0) -> np.ndarray:
@@ -88,11 +88,11 @@ def outside(along: Fundamental, t: np.ndarray, values: np.ndarray, harmonics: in
     ``cycles`` is the distance of the knots along which the harmonics' amplitudes may change.
     """
     spline = along.cycles if cycles == 1.0 else CycleSpline(t, along.phase, cycles)
-    rest = values - spline.fit(values)(t)
+    rest = values - spline.smoothed(values)
     energy = _over_a_cycle(along, t, rest**2)
     for n in range(1, harmonics + 1):
         turn = np.exp(1j * n * along.phase)
-        rest = rest - 2.0 * (spline.fit(values / turn)(t) * turn).real
+        rest = rest - 2.0 * (spline.smoothed(values / turn) * turn).real
     left = _over_a_cycle(along, t, rest**2)
     return left / np.maximum(energy, np.maximum(left, 1e-300))
 
