@@ -20,10 +20,12 @@ from ..pointwise import exerted
 from ..records import Record
 from ..signals import choose_intervals, fit_spline, span
 from .averaged import Averaged
-from .least import least_between
 
 ROOM = 500_000
 """Samples of several plays that are looked at together at most."""
+ZOOMS, NEAR = 3, 16
+"""How often the best play and its neighbours are looked at more closely, and how many sizes of it each time: what is left between
+two of them is a ten-thousandth of the largest deflection."""
 
 
 @dataclass(frozen=True)
@@ -72,21 +74,21 @@ def estimate(
     units = [_unit(effect, name) for effect, name in strengths]
     steady = [weak.steady(unit, reach) for unit in units]
 
-    def rows(half_play: float, pressed: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """The regression at half a play, its columns and its right side; ``pressed`` the contact's column where it is known."""
-        columns = [damping_column]
+    right = weak.force if inertia is None else weak.force - inertia * weak.acceleration
+
+    def columns(halves: np.ndarray) -> np.ndarray:
+        """The columns (K, C, R) of the regressions at half plays (K,)."""
+        found = [damping_column]
         if spring:
-            columns.append(weak.average(_dead_zone(weak.z, half_play)) if pressed is None else pressed)
+            found.append(weak.average(_dead_zone(weak.z, halves[:, None])))
         if inertia is None:
-            columns.append(weak.acceleration)
-            right = weak.force
-        else:
-            right = weak.force - inertia * weak.acceleration
-        columns += [-weak.torque(u, half_play) if known is None else -known for u, known in zip(units, steady)]
-        return np.stack(columns, axis=1), right
+            found.append(weak.acceleration)
+        for unit, known in zip(units, steady):
+            found.append(-np.stack([weak.torque(unit, half) for half in halves]) if known is None else -known)
+        return np.stack([np.broadcast_to(column, (halves.size, right.size)) for column in found], axis=1)
 
     def solve(half_play: float) -> tuple[float, np.ndarray]:
-        matrix, right = rows(half_play)
+        matrix = columns(np.array([half_play]))[0].T
         scale = np.linalg.norm(matrix, axis=0)
         scale[scale == 0.0] = 1.0
         solution = np.linalg.lstsq(matrix / scale, right, rcond=None)[0] / scale
@@ -95,17 +97,18 @@ def estimate(
 
     half = 0.0
     if spring and play:
-        grid = reach * np.linspace(0.01, 0.97, plays)
         together = max(1, ROOM // weak.z.size)
-        misfits = np.concatenate(
-            [
-                _misfits([rows(h, pressed) for h, pressed in zip(some, weak.average(_dead_zone(weak.z, some[:, None])))])
-                for some in (grid[k : k + together] for k in range(0, plays, together))
-            ]
-        )
-        k = int(np.argmin(misfits))
-        low, high = grid[max(k - 1, 0)], grid[min(k + 1, grid.size - 1)]
-        half = least_between(lambda h: solve(h)[0], low, high, 1e-3 * (high - low))
+
+        def best_of(grid: np.ndarray) -> int:
+            parts = (grid[k : k + together] for k in range(0, grid.size, together))
+            return int(np.argmin(np.concatenate([_misfits(columns(part), right) for part in parts])))
+
+        grid = reach * np.linspace(0.01, 0.97, plays)
+        k = best_of(grid)
+        for _ in range(ZOOMS):
+            grid = np.linspace(grid[max(k - 1, 0)], grid[min(k + 1, grid.size - 1)], NEAR)
+            k = best_of(grid)
+        half = float(grid[k])
     misfit, solution = solve(half)
     # Strengths relative to the contact stiffness or to the damping need these to be known.
     weak.joint = max(float(solution[1]), 1e-9) if spring else 1.0, max(float(solution[0]), 1e-9)
@@ -124,15 +127,16 @@ def estimate(
     )
 
 
-def _misfits(regressions: Sequence[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
-    """Shares of the right sides (K,) that K regressions leave, by their normal equations, all at once: near enough to choose."""
-    matrix, right = (np.stack(parts) for parts in zip(*regressions))
-    scale = np.linalg.norm(matrix, axis=1, keepdims=True)
-    matrix = matrix / np.where(scale == 0.0, 1.0, scale)
-    normal = np.swapaxes(matrix, 1, 2) @ matrix
-    solution = np.linalg.pinv(normal, rcond=1e-14, hermitian=True) @ (np.swapaxes(matrix, 1, 2) @ right[:, :, None])
-    residual = right - (matrix @ solution)[:, :, 0]
-    found: np.ndarray = np.sum(residual**2, axis=1) / (np.sum(right**2, axis=1) + 1e-300)
+def _misfits(columns: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Shares of the right side (R,) that K regressions on ``columns`` (K, C, R) leave, by their normal equations, all at once:
+    near enough to choose."""
+    normal = columns @ np.swapaxes(columns, 1, 2)
+    scale = np.sqrt(np.diagonal(normal, axis1=1, axis2=2))
+    scale = np.where(scale == 0.0, 1.0, scale)
+    inverse = np.linalg.pinv(normal / (scale[:, :, None] * scale[:, None, :]), rcond=1e-14, hermitian=True)
+    solution = (inverse @ (columns @ right / scale)[:, :, None])[:, :, 0] / scale
+    residual = right - (solution[:, None, :] @ columns)[:, 0]
+    found: np.ndarray = np.sum(residual**2, axis=1) / (np.sum(right**2) + 1e-300)
     return found
 
 

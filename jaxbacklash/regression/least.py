@@ -1,4 +1,4 @@
-"""The lowest point of a function of one number between two bounds, for the half play that fits a record best."""
+"""The lowest point of a function of one number between two bounds, for the half play that fits a skeleton best."""
 
 from __future__ import annotations
 

@@ -10,6 +10,7 @@ length does not compile anew.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any
 
 import equinox as eqx
@@ -221,6 +222,7 @@ def _driver(records: Sequence[Record]) -> str | None:
     return None
 
 
+@lru_cache(maxsize=32)
 def _basis(length: int, every: int, intervals: int, panel: float) -> np.ndarray:
     edges = panel * np.arange(length * every + 1)
     if intervals == 0:
@@ -233,6 +235,7 @@ def _basis(length: int, every: int, intervals: int, panel: float) -> np.ndarray:
     return np.stack([curve(inside, *own, order) for order in range(DEGREE + 1)])
 
 
+@lru_cache(maxsize=32)
 def _shown(length: int, intervals: int, needed: int) -> np.ndarray:
     """What a window's coefficients come to at its samples, and at the knots inside it the corners that are not to be.
 

@@ -12,7 +12,8 @@ from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
-from scipy.linalg import cho_solve_banded, cholesky_banded
+from scipy.linalg import cholesky_banded
+from scipy.linalg.lapack import dpbtrs
 
 
 class BSplines:
@@ -65,6 +66,8 @@ class BSplines:
 
     def of(self, coefficients: np.ndarray) -> np.ndarray:
         """The sum of the splines with these coefficients (count, ...) at the times, shape (N, ...)."""
+        if coefficients.ndim == 1:
+            return np.einsum("kn,kn->n", self.rows, coefficients[self._seen])
         along = (slice(None),) + (None,) * (coefficients.ndim - 1)
         total = self.rows[0][along] * coefficients[self.first]
         for k, row in enumerate(self.rows[1:], 1):
@@ -73,7 +76,11 @@ class BSplines:
 
     def onto(self, values: np.ndarray) -> np.ndarray:
         """Sum over the samples (N,), times rising, of value times spline, for each spline: shape (count,)."""
-        return self._spread(list(self.rows * values), range(len(self.rows)))
+        if np.iscomplexobj(values):
+            return self.onto(values.real) + 1j * self.onto(values.imag)
+        begins, _ = self._groups
+        sums = np.add.reduceat(self.rows * values, begins, axis=1)
+        return np.bincount(self._places, sums.ravel(), self.count)
 
     @cached_property
     def gram(self) -> np.ndarray:
@@ -91,9 +98,19 @@ class BSplines:
         begins = np.concatenate([[0], np.flatnonzero(np.diff(self.first)) + 1])
         return begins, self.first[begins]
 
+    @cached_property
+    def _seen(self) -> np.ndarray:
+        """The splines that each time sees, (degree + 1, N)."""
+        return self.first + np.arange(len(self.rows))[:, None]
+
+    @cached_property
+    def _places(self) -> np.ndarray:
+        """The same of each group of samples, in a row."""
+        return (self._groups[1] + np.arange(len(self.rows))[:, None]).ravel()
+
     def _spread(self, products: list[np.ndarray], places: range) -> np.ndarray:
         begins, first = self._groups
-        total = np.zeros(self.count, np.result_type(*products))
+        total = np.zeros(self.count)
         for product, place in zip(products, places):
             total[first + place] += np.add.reduceat(product, begins)
         return total
@@ -134,9 +151,9 @@ class LeastSquares:
         """Coefficients (count,) for real or complex samples (N,)."""
         right = self.splines.onto(values)
         if np.iscomplexobj(right):
-            both = cho_solve_banded((self._factor, False), np.stack([right.real, right.imag], axis=1))
+            both = dpbtrs(self._factor, np.stack([right.real, right.imag], axis=1))[0]
             return both[:, 0] + 1j * both[:, 1]
-        return cho_solve_banded((self._factor, False), right)
+        return dpbtrs(self._factor, right)[0]  # LAPACK itself: checking and wrapping take three times as long
 
 
 def curve(t: np.ndarray, knots: np.ndarray, coefficients: np.ndarray, degree: int, order: int = 0) -> np.ndarray:

@@ -22,6 +22,8 @@ NEGLIGIBLE = 1e-6
 """Share of a signal's size below which a misfit of the spline does not count."""
 FOLLOWED = 0.5
 """Share of a signal's size that a spline may miss and still follow it."""
+CANDIDATES = tuple(round(1.26**k) for k in range(32))
+"""Knot intervals per window that are tried."""
 KEPT = 200_000
 """Samples up to which factored equations are kept for the next signal: those of longer records would fill the memory."""
 
@@ -111,7 +113,7 @@ def choose_intervals(t: np.ndarray, values: np.ndarray, window: float, *, longes
         t, values = t[first : first + longest], values[first : first + longest]
     dt = (t[-1] - t[0]) / (t.size - 1)
     most = max(1, int(window / (2.0 * dt) + 1e-9))
-    candidates = sorted({min(most, round(1.26**k)) for k in range(32)})
+    candidates = sorted({min(most, one) for one in CANDIDATES})
     best, lowest, bottom, rising, followed = candidates[0], np.inf, np.inf, 0, False
     # A signal without noise would ask for ever more knots; a millionth of its size is as good as exact.
     floor = (NEGLIGIBLE * np.std(values)) ** 2
