@@ -50,6 +50,8 @@ class EvidenceSearch:
         except ExhaustedError:
             self._end_early()
             model = self.path[-1].model
+            while (better := self._best(self.one_law_fewer, -self.demand, model)) is not None:  # no law stays untried
+                model = better
         budget, self.fitter.budget = self.fitter.budget, math.inf  # what is still to be told of the model kept takes a few more
         model = self.clear(model)
         self._note_ranking()
@@ -87,14 +89,20 @@ class EvidenceSearch:
         for move, least in (
             (self.more_laws, self.demand), (self.one_law_fewer, -self.demand), (self.another_law, self.demand),
         ):  # fmt: skip
-            found: FittedModel | None = None
-            for neighbour in move(model):
-                fitted = self._fitted(neighbour, model)
-                found = fitted if found is None else self.likelier(model, found, fitted)
-            if found is not None and self.evidence(model, found) > least:
-                self._step(model, found)
+            if (found := self._best(move, least, model)) is not None:
                 return found
         return None
+
+    def _best(self, move: Callable[[FittedModel], Iterator[Neighbour]], least: float, model: FittedModel) -> FittedModel | None:
+        """The best model that a kind of move leads to, if it has more evidence than ``least``: then the move is made."""
+        found: FittedModel | None = None
+        for neighbour in move(model):
+            fitted = self._fitted(neighbour, model)
+            found = fitted if found is None else self.likelier(model, found, fitted)
+        if found is None or not self.evidence(model, found) > least:
+            return None
+        self._step(model, found)
+        return found
 
     def _fitted(self, neighbour: Neighbour, model: FittedModel) -> FittedModel:
         near = neighbour.near
@@ -119,11 +127,14 @@ class EvidenceSearch:
     def likelier(self, model: FittedModel, found: FittedModel, other: FittedModel) -> FittedModel:
         """The likelier of two neighbours of a model."""
         close = abs(self.evidence(found, other)) < SCATTER < self.evidence(model, other) + 2.0 * SCATTER
+        ahead, behind = (other, found) if self.evidence(found, other) > 0.0 else (found, other)
         if close and self.slides(found, other):
-            # Corners of dry friction scatter where fits end: each is begun once more from where the other one has ended.
-            other = self.fitter.fit_model(self.fitter.effects(other), found, again=True)
-            found = self.fitter.fit_model(self.fitter.effects(found), other, again=True)
-        return other if self.evidence(found, other) > 0.0 else found
+            # Corners of dry friction scatter where fits end: the one behind is begun once more from where the other one ended,
+            # and that one from there if it has fallen behind.
+            behind = self.fitter.fit_model(self.fitter.effects(behind), ahead, again=True)
+            if self.evidence(ahead, behind) > 0.0:
+                ahead = self.fitter.fit_model(self.fitter.effects(ahead), behind, again=True)
+        return behind if self.evidence(ahead, behind) > 0.0 else ahead
 
     def slides(self, *models: FittedModel) -> bool:
         """Whether dry friction is in any of some models."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..fitting.continuation import Continued, continued, in_one_run, sharpened
 from ..fitting.left_out import excess
-from ..fitting.settings import LOOSE, LOOSEST, MEASURING, MOST_STEPS, TIGHTEST
+from ..fitting.settings import LOOSE, LOOSEST, MEASURING, MOST_STEPS, SHARP, TIGHTEST
 from ..fitting.setup import first_guess, read_through
 from ..fitting.stick_slip import sticks_and_slips
 from ..mechanics import AbstractEffect
@@ -131,9 +131,12 @@ class ModelFitter(ModelBuilder):
         rest = excess(found)
         # What a model leaves out counts as if it were left as misfit by one trajectory.
         misfit = np.sqrt(max(1.0 + rest / count, 0.0))
+        # Dry friction is softened on the way up to `SHARP`, so that those fits are not of this model.
+        least = SHARP if any(self.laws[n].slides for n in names) else LOOSEST
+        seen = {stop.tie: stop.log_evidence for stop in found.stops if stop.tie >= least}
         return FittedModel(
             with_values(problem.system, dict(zip(values(problem.system), moved))), names, free, found.minimum.value, cost,
             float(misfit), np.asarray(stats["schur"]), np.sum(problem.directions, axis=0), whole,
             found.converged, len(free) * float(np.log(rows)) + self._doubt(names), correlation_length(residual),
-            int(stats["steps"]), found.tie, found.log_evidence, inside, rest, count, found.stops, found,
+            int(stats["steps"]), found.tie, found.log_evidence, inside, rest, count, found.stops, found, seen,
         )  # fmt: skip
