@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from jaxbacklash.criticism.candidates import _gain, score_test
+from jaxbacklash.criticism.candidates import predicted_gain, score_test
 from jaxbacklash.criticism.evidence import gain
 
 from .hidden import fitter, hidden
 
 
 def test_a_candidate_whose_trajectory_runs_away_promises_nothing():
-    step, fall = _gain(np.array([[1.0, np.inf], [np.inf, 2.0]]), np.array([1.0, 1.0]), 1)
+    step, fall = predicted_gain(np.array([[1.0, np.inf], [np.inf, 2.0]]), np.array([1.0, 1.0]), 1)
     assert fall == 0.0
     assert np.array_equal(step, np.zeros(2))
 

@@ -222,4 +222,4 @@ def predicted_gain(information: np.ndarray, score: np.ndarray, q: int) -> tuple[
     scaled, score = information / np.outer(scale, scale), score / scale
     step = np.linalg.pinv(scaled, rcond=1e-10, hermitian=True) @ score
     without = np.linalg.pinv(scaled[:q, :q], rcond=1e-10, hermitian=True) @ score[:q]
-    return step / scale, float(score @ step - score[:q] @ without)
+    return step / scale, max(float(score @ step - score[:q] @ without), 0.0)  # below zero by rounding alone
