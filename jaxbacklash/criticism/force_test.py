@@ -16,7 +16,7 @@ from ..fitting.settings import SHARP
 from ..mechanics import AbstractEffect
 from ..regression.along_motion import motion, own_states, own_torques
 from ..shooting.problem import Unknowns
-from ..shooting.score_columns import information_beside
+from ..shooting.score_columns import TOGETHER, information_beside
 from .candidates import predicted_gain
 from .fitted_model import FittedModel
 from .model_fitter import ModelFitter
@@ -80,12 +80,14 @@ class ForceTest:
         return self._falls(at_edges, np.zeros((len(torques), *np.shape(self.problem.windows.measured))))
 
     def _falls(self, torques: np.ndarray, shown: np.ndarray) -> list[tuple[float, float]]:
-        information, score = information_beside(self.problem, self.unknowns, torques, shown)
         own, found = list(range(self.free)), []
-        for column in range(len(score) - len(torques), len(score)):
-            index = [*own, column]
-            step, gain = predicted_gain(information[np.ix_(index, index)], score[index], self.free)
-            found.append((gain, float(step[-1])) if step[-1] > 0.0 else (0.0, 1.0))
+        for begin in range(0, len(torques), TOGETHER):
+            part = slice(begin, begin + TOGETHER)
+            information, score = information_beside(self.problem, self.unknowns, torques[part], shown[part])
+            for column in range(len(score) - len(torques[part]), len(score)):
+                index = [*own, column]
+                step, gain = predicted_gain(information[np.ix_(index, index)], score[index], self.free)
+                found.append((gain, float(step[-1])) if step[-1] > 0.0 else (0.0, 1.0))
         return found
 
     def _answer(self, torque: np.ndarray, share: float) -> float:

@@ -23,7 +23,7 @@ from .problem import Problem, Unknowns
 
 Array = Any
 TOGETHER = 10
-"""Columns are made in multiples of so many, so that one more compiles nothing."""
+"""Columns of one run: a program is compiled for so many, and for no other number where no more are asked for at a time."""
 
 
 def information_beside(
