@@ -107,6 +107,7 @@ def begun(record):
     return problem, first_guess(problem)
 
 
+@pytest.mark.slow
 def test_no_law_is_stiffer_than_a_step_of_the_integration_follows():
     """Dahl's law on a link that dry friction holds: its stiffness may grow as far as a Runge-Kutta step is stable, no further."""
     record, rig, _, _ = hidden("coulomb_joint", "multisine", 5, 4.0, Tc=4.5)

@@ -62,6 +62,7 @@ def test_the_column_of_a_shift_is_how_the_cost_falls_with_it(fitted):
     assert lowest(0.0) - lowest(float(step[-1])) == pytest.approx(fall, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_columns_are_told_apart_by_their_number(fitted):
     own, model = fitted
     problem, _ = own.problem({}, model.system)
