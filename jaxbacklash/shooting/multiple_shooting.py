@@ -111,10 +111,10 @@ def predict(problem: Problem, theta: Array, start: Array, local: Array, t0: Arra
 
 def predictions(problem: Problem, unknowns: Unknowns) -> Prediction:
     """Predictions of all windows, stacked on the leading axis."""
-    return predict_all(problem, unknowns.theta, unknowns.starts, local_coefficients(problem.windows, unknowns.coefficients))[0]
+    return _predict_all(problem, unknowns.theta, unknowns.starts, local_coefficients(problem.windows, unknowns.coefficients))[0]
 
 
-def predict_all(problem: Problem, theta: Array, starts: Array, local: Array) -> tuple[Prediction, Any, Array, Array]:
+def _predict_all(problem: Problem, theta: Array, starts: Array, local: Array) -> tuple[Prediction, Any, Array, Array]:
     w = problem.windows
     system = problem.rebuild(theta)
     u, du = jax.vmap(lambda t0, c: spline_input(w, lags(w, system, t0), c))(w.t0, local)
@@ -175,7 +175,7 @@ class Shot(eqx.Module):
 
 def shoot(problem: Problem, unknowns: Unknowns) -> Shot:
     """Run through all windows: a sixth of the work of a linearisation, and all that is needed to turn a step down."""
-    shot = by_chunks(_shoot, (bare(problem), unknowns.theta), side_by_side(problem, unknowns), problem.windows.used)
+    shot = by_chunks(_shoot, (_bare(problem), unknowns.theta), _windows(problem, unknowns), problem.windows.used)
     beside = sum(0.5 * jnp.sum(row**2) for row in _prior_rows(problem, unknowns))
     return eqx.tree_at(lambda s: s.cost, shot, jnp.sum(shot.cost) + beside)
 
@@ -199,35 +199,35 @@ def _prior_rows(problem: Problem, unknowns: Unknowns) -> tuple[Array, Array, Arr
 def _shoot(shared: tuple[Problem, Array], own: Window) -> Shot:
     problem, theta = shared
     problem = eqx.tree_at(per_window, problem, own.data, is_leaf=lambda v: v is None)
-    predicted, states, u, du = predict_all(problem, theta, own.start.T, own.local)
+    predicted, states, u, du = _predict_all(problem, theta, own.start.T, own.local)
     motion, base, tie = _residuals(problem.windows, predicted, own.following, tie_weights(problem, own.start.shape[1]))
     cost = 0.5 * (jnp.sum(motion**2, axis=1) + jnp.sum(base**2, axis=1) + jnp.sum(tie**2, axis=1))
     return Shot(predicted, states, u, du, motion, base, tie, cost)
 
 
-def linearise(problem: Problem, unknowns: Unknowns, shot: Shot, further: Array | None = None) -> Blocks:
+def linearise(problem: Problem, unknowns: Unknowns, shot: Shot, columns: Columns | None = None) -> Blocks:
     """The blocks of the normal equations at a point where the windows were run through.
 
-    Each window has n + m + 5 unknowns and meets the q parameters; the derivatives come from `tangents.rows`. ``further``
-    (W, K, M C + n) is how the measured channels and the ends of windows move with K more parameters, which come after those.
+    Each window has n + m + 5 unknowns and meets the q parameters; the derivatives come from `tangents.rows`. The sizes of K
+    ``columns`` are more parameters, which come after those.
     """
     n, q, m = unknowns.starts.shape[0], unknowns.theta.shape[0], problem.windows.intervals
-    q += 0 if further is None else further.shape[1]
-    lead = side_by_side(problem, unknowns), eqx.tree_at(lambda s: (s.cost, s.predicted), shot, (None, None)), further
-    shared, theta = bare(problem), unknowns.theta
+    q += 0 if columns is None else columns.torques.shape[1]
+    lead = _windows(problem, unknowns), eqx.tree_at(lambda s: (s.cost, s.predicted), shot, (None, None)), columns
+    shared, theta = _bare(problem), unknowns.theta
     plain = plain_of(shared.windows, rebuild_active(problem), theta)
     met = by_chunks(_meet, (shared, theta, plain), lead, problem.windows.used)
     blocks = assemble(met.gram, met.slope, met.end_rows, shot.tie, met.tie_weight, met.seen, n, m, q, shot.cost)
     return _ridge(problem, unknowns, blocks, n)
 
 
-def side_by_side(problem: Problem, unknowns: Unknowns) -> Window:
+def _windows(problem: Problem, unknowns: Unknowns) -> Window:
     starts = unknowns.starts.T
     following = jnp.concatenate([starts[1:], starts[:1]])
     return Window(per_window(problem), starts, following, local_coefficients(problem.windows, unknowns.coefficients))
 
 
-def bare(problem: Problem) -> Problem:
+def _bare(problem: Problem) -> Problem:
     return eqx.tree_at(per_window, problem, replace=(None,) * len(per_window(problem)), is_leaf=lambda v: v is None)
 
 
@@ -238,6 +238,14 @@ class Window(eqx.Module):
     start: Array
     following: Array
     local: Array
+
+
+class Columns(eqx.Module):
+    """What K more parameters do, each at size 1: ``torques`` (W, K, P+1) on the link at panel edges, and what the measured
+    channels show more, ``shown`` (W, K, M C)."""
+
+    torques: Array
+    shown: Array
 
 
 class Met(eqx.Module):
@@ -257,18 +265,19 @@ def per_window(problem: Problem) -> tuple[Array, ...]:
     return w.t0, w.measured, w.weight, w.tie, w.input, w.input_weight, w.force
 
 
-def _meet(shared: tuple[Problem, Array, PlainMap | None], lead: tuple[Window, Shot, Array | None]) -> Met:
-    (problem, theta, plain), (own, shot, further) = shared, lead
+def _meet(shared: tuple[Problem, Array, PlainMap | None], lead: tuple[Window, Shot, Columns | None]) -> Met:
+    (problem, theta, plain), (own, shot, columns) = shared, lead
     problem = eqx.tree_at(per_window, problem, own.data, is_leaf=lambda v: v is None)
     w = problem.windows
     n, q = own.start.shape[1], theta.shape[0]
     basis, lagged = input_tangents(problem, theta, own.local)
     rebuild = rebuild_active(problem)
-    motion_rows, end_rows = rows(w, rebuild, theta, problem.active, plain, shot.states, shot.u, shot.du, basis, lagged)
-    if further is not None:
-        q += further.shape[1]
-        motion_rows = jnp.concatenate([motion_rows, further[:, :, :-n]], axis=1)
-        end_rows = jnp.concatenate([end_rows, further[:, :, -n:]], axis=1)
+    torques = None if columns is None else columns.torques
+    run = rebuild, theta, problem.active, plain, shot.states, shot.u, shot.du
+    motion_rows, end_rows = rows(w, *run, basis, lagged, torques)
+    if columns is not None:
+        q += columns.shown.shape[1]
+        motion_rows = motion_rows + jnp.pad(columns.shown, ((0, 0), (motion_rows.shape[1] - columns.shown.shape[1], 0), (0, 0)))
     tie_weight = tie_weights(problem, n)
     weighted = jnp.concatenate([weighed(motion_rows, w.weight[:, None, :]), weighed(end_rows, tie_weight[:, None, :])], axis=2)
     gram = jnp.einsum("wir,wjr->wij", weighted, weighted)

@@ -24,8 +24,8 @@ BLOCK, TOGETHER = 400, 3
 """Panels that are differentiated side by side, at most, and directions that share one pass through the laws."""
 FEW = 64
 """Panels that are differentiated side by side where few have to be."""
-DRIVEN = 6
-"""Numbers that tell the drive of a panel: input and rate at its start, the same at its end, and the exact force at both."""
+MOVING, DRIVEN = 4, 6
+"""Numbers that tell the drive of a panel: input and rate at its start, the same at its end; and with the exact force at both."""
 
 
 def drive(w: Windows, u: Array, du: Array, force: Array) -> Drive:
@@ -46,17 +46,20 @@ def plain_of(w: Windows, rebuild: Callable[[Array], System], theta: Array) -> Pl
 
 
 def panel_matrices(
-    w: Windows, rebuild: Any, theta: Array, active: Array, plain: PlainMap | None, states: tuple[Array, ...], u: Array, du: Array
-) -> Array:
-    """Derivatives of every panel's end, shape (P, n + 4 + q, n, W): by its start, by u, du at both edges, by theta.
+    w: Windows, rebuild: Any, theta: Array, active: Array, plain: PlainMap | None, states: tuple[Array, ...], u: Array, du: Array,
+    edges: int = MOVING,
+) -> Array:  # fmt: skip
+    """Derivatives of every panel's end, shape (P, n + e + q, n, W): by its start, by u, du at both edges, by theta.
 
-    Those by theta only as far as the first ``active``; ``plain`` is what `plain_of` tells.
+    Those by theta only as far as the first ``active``; ``plain`` is what `plain_of` tells. ``edges`` is e: `MOVING`, or `DRIVEN`
+    for those by the exact force at both edges as well, which come after u and du.
     """
     given = *states, u[:, :-1], du[:, :-1], u[:, 1:], du[:, 1:], w.force[:, :-1], w.force[:, 1:]
     inputs = tuple(value.T for value in given)  # each (P, W)
+    own = len(states) + edges
     if plain is None:
-        return _one_by_one(w, rebuild, theta, active, inputs)
-    return _of_linear(w, rebuild, theta, active, plain, inputs)
+        return _one_by_one(w, rebuild, theta, active, inputs, len(states), own)
+    return _of_linear(w, rebuild, theta, active, plain, inputs, own)
 
 
 def _ends(w: Windows, given: Any) -> tuple[Drive, Drive]:
@@ -65,13 +68,15 @@ def _ends(w: Windows, given: Any) -> tuple[Drive, Drive]:
     return drive(w, u0, du0, f0), drive(w, u1, du1, f1)
 
 
-def _one_by_one(w: Windows, rebuild: Any, theta: Array, active: Array, inputs: tuple[Array, ...]) -> Array:
+def _one_by_one(
+    w: Windows, rebuild: Any, theta: Array, active: Array, inputs: tuple[Array, ...], n: int, own: int
+) -> Array:  # fmt: skip
     """In blocks of panels that stay in the processor's cache: some times faster than all at once."""
-    n, (panels, windows) = len(inputs) - DRIVEN, inputs[0].shape
+    panels, windows = inputs[0].shape
     blocks = -(-panels * windows // BLOCK)
     size = -(-panels * windows // blocks)
     lay = lambda values: jnp.pad(values.ravel(), (0, blocks * size - values.size)).reshape(blocks, size)  # noqa: E731
-    differentiated = _differentiated(w, rebuild, theta, active, n)
+    differentiated = _differentiated(w, rebuild, theta, active, n, own)
     found = jax.lax.map(lambda at: differentiated(*at), (tuple(lay(v) for v in inputs), lay(_times(w, panels))))
 
     def unlay(values: Array) -> Array:
@@ -86,30 +91,31 @@ def _times(w: Windows, panels: int) -> Array:
 
 
 def _differentiated(
-    w: Windows, rebuild: Any, theta: Array, active: Array, n: int
+    w: Windows, rebuild: Any, theta: Array, active: Array, n: int, own: int
 ) -> Callable[[tuple[Array, ...], Array], tuple[Array, ...]]:
-    """A function of the inputs and times of some panels, (lanes,) each: derivatives of each state, (n + 4 + q, lanes).
+    """A function of the inputs and times of some panels, (lanes,) each: derivatives of each of n states, (own + q, lanes), by the
+    first ``own`` inputs and by theta.
 
     A few directions after the other, those of theta only as far as they are active: with dry friction in a third less time than
     one by one.
     """
-    q = theta.shape[0]
-    seeds = jnp.eye(-(-(n + 4 + q) // TOGETHER) * TOGETHER, n + 4 + q)
+    count = own + theta.shape[0]
+    seeds = jnp.eye(-(-count // TOGETHER) * TOGETHER, count)
 
-    def step(own: Any, theta: Array, t: Array, f0: Array, f1: Array) -> Any:
+    def step(free: Any, theta: Array, t: Array, held: Any) -> Any:
         system = rebuild(theta)
-        a, b = _ends(w, (*own[n:], f0, f1))
+        a, b = _ends(w, (*free[n:], *held))
         begin, panel = system.passed(t, w.panel)
-        return one_panel(system, begin, own[:n], a, b, panel, system.switches)
+        return one_panel(system, begin, free[:n], a, b, panel, system.switches)
 
-    lanes = jax.vmap(step, in_axes=(0, None, 0, 0, 0))
+    lanes = jax.vmap(step, in_axes=(0, None, 0, 0))
 
     def of(inputs: tuple[Array, ...], t: Array) -> tuple[Array, ...]:
-        own, (f0, f1) = inputs[: n + 4], inputs[n + 4 :]
+        free, held = inputs[:own], inputs[own:]
 
         def along(seed: Array) -> Any:
-            moved = tuple(jnp.broadcast_to(seed[i], t.shape) for i in range(n + 4))
-            return jax.jvp(lambda o, th: lanes(o, th, t, f0, f1), (own, theta), (moved, seed[n + 4 :]))[1]
+            moved = tuple(jnp.broadcast_to(seed[i], t.shape) for i in range(own))
+            return jax.jvp(lambda o, th: lanes(o, th, t, held), (free, theta), (moved, seed[own:]))[1]
 
         def push(turn: Array, found: Any) -> Any:
             first = turn * TOGETHER
@@ -117,30 +123,32 @@ def _differentiated(
             return tuple(jax.lax.dynamic_update_slice_in_dim(f, e, first, axis=0) for f, e in zip(found, end))
 
         empty = tuple(jnp.zeros((seeds.shape[0], t.shape[0])) for _ in range(n))
-        found = jax.lax.fori_loop(0, -(-(n + 4 + active) // TOGETHER), push, empty)
-        return tuple(f[: n + 4 + q] for f in found)
+        found = jax.lax.fori_loop(0, -(-(own + active) // TOGETHER), push, empty)
+        return tuple(f[:count] for f in found)
 
     return of
 
 
-def _of_linear(w: Windows, rebuild: Any, theta: Array, active: Array, plain: PlainMap, inputs: tuple[Array, ...]) -> Array:
+def _of_linear(
+    w: Windows, rebuild: Any, theta: Array, active: Array, plain: PlainMap, inputs: tuple[Array, ...], own: int
+) -> Array:  # fmt: skip
     """Panels that stay on a side of the play by its map, and then those that do not."""
     n, (panels, windows) = len(inputs) - DRIVEN, inputs[0].shape
     t = _times(w, panels)
     side, stays = sides(rebuild(theta), t, plain, inputs, _ends(w, inputs[n:]), w.panel)
     away = (side != 0.0)[:, None, None, :]
-    by_own = jnp.where(away, plain.end[2, : n + 4, :, None], plain.end[1, : n + 4, :, None])
+    by_own = jnp.where(away, plain.end[2, :own, :, None], plain.end[1, :own, :, None])
     by_theta = [jnp.stack(mapped(moved, side, inputs), axis=1)[:, None] for moved in plain.moved]
     matrices = jnp.concatenate([by_own, *by_theta], axis=1)
 
     before = jnp.cumsum(~stays.ravel())
-    differentiated = _differentiated(w, rebuild, theta, active, n)
+    differentiated = _differentiated(w, rebuild, theta, active, n, own)
     flat = tuple(v.ravel() for v in (*inputs, t))
 
     def block(k: Array, matrices: Array) -> Array:
         at = jnp.searchsorted(before, k * FEW + 1 + jnp.arange(FEW))  # beyond the last one: the number of panels
-        *own, times = (jnp.take(v, at, mode="clip") for v in flat)
-        found = jnp.stack(differentiated(tuple(own), times), axis=-1)  # (n + 4 + q, lanes, n)
+        *given, times = (jnp.take(v, at, mode="clip") for v in flat)
+        found = jnp.stack(differentiated(tuple(given), times), axis=-1)  # (own + q, lanes, n)
         return matrices.at[at // windows, :, :, at % windows].set(jnp.swapaxes(found, 0, 1), mode="drop")
 
     return jax.lax.fori_loop(0, -(-before[-1] // FEW), block, matrices)

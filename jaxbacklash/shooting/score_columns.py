@@ -10,15 +10,12 @@ from __future__ import annotations
 
 from typing import Any
 
-import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
 
 from ..compiled import kept_jit
-from .chunks import by_chunks
 from .damped_step import solve
-from .multiple_shooting import Window, bare, linearise, per_window, predict_all, shoot, side_by_side
+from .multiple_shooting import Columns, linearise, shoot
 from .problem import Problem, Unknowns
 
 Array = Any
@@ -56,24 +53,6 @@ def information_beside(
 
 @kept_jit
 def _information(problem: Problem, unknowns: Unknowns, torques: Array, shown: Array) -> tuple[Array, Array]:
-    w = problem.windows
-    lead = side_by_side(problem, unknowns), torques, shown
-    further = by_chunks(_answers, (bare(problem), unknowns.theta), lead, w.used)
-    done = solve(linearise(problem, unknowns, shoot(problem, unknowns), further), jnp.asarray(0.0), w.used)
+    blocks = linearise(problem, unknowns, shoot(problem, unknowns), Columns(torques, shown))
+    done = solve(blocks, jnp.asarray(0.0), problem.windows.used)
     return done.schur, done.score
-
-
-def _answers(shared: tuple[Problem, Array], lead: tuple[Window, Array, Array]) -> Array:
-    """How channels and ends of some windows move with each column, (W, K, M C + n)."""
-    (problem, theta), (own, torques, shown) = shared, lead
-    problem = eqx.tree_at(per_window, problem, own.data, is_leaf=lambda v: v is None)
-
-    def run(force: Array) -> Array:
-        pushed = eqx.tree_at(lambda p: p.windows.force, problem, force)
-        predicted = predict_all(pushed, theta, own.start.T, own.local)[0]
-        return jnp.concatenate([predicted.motion, predicted.end], axis=1)
-
-    # The run itself is the same for all columns, and vmap computes it once.
-    push = lambda torque: jax.jvp(run, (problem.windows.force,), (torque,))[1]  # noqa: E731
-    moved = jax.vmap(push, in_axes=1, out_axes=1)(torques)
-    return moved + jnp.pad(shown, ((0, 0), (0, 0), (0, own.start.shape[1])))
