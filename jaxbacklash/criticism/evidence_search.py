@@ -17,6 +17,7 @@ from ..fitting.settings import CLEAR_SHARE, CLOSE, MOST_FITTED, MOST_LAWS, PROMI
 from .candidates import Candidate, share_of_rest, stepwise_selection
 from .evidence import demanded, leaves_noise, noise_too_large
 from .fitted_model import FittedModel
+from .force_test import compiling_aside
 from .model_fitter import ExhaustedError, ModelFitter
 from .moves import Neighbour, in_other_forms, with_law, with_laws, with_others_of, with_simpler_law, without_law
 from .screening import net_gain, screen
@@ -42,7 +43,8 @@ class EvidenceSearch:
     def run(self) -> list[SearchStep]:
         """The path from the joint alone to the model kept."""
         self.progress("fitting the joint alone", 0.1)
-        model = self.fitter.fit_model({})
+        with compiling_aside(self.fitter):
+            model = self.fitter.fit_model({})
         self.path = [SearchStep(model, None, (), ())]
         try:
             while (better := self.better_neighbour(model)) is not None:

@@ -8,19 +8,43 @@ for it.
 
 from __future__ import annotations
 
+import contextlib
+import threading
+from collections.abc import Iterator
+
 import equinox as eqx
 import numpy as np
 
 from ..fitting.continuation import tied
 from ..fitting.settings import SHARP
+from ..fitting.setup import first_guess
+from ..fitting.stick_slip import sticks_and_slips
 from ..mechanics import AbstractEffect
 from ..regression.along_motion import motion, own_states, own_torques
 from ..shooting.problem import Unknowns
-from ..shooting.score_columns import TOGETHER, information_beside
+from ..shooting.score_columns import TOGETHER, information_beside, ready
 from .candidates import predicted_gain
 from .fitted_model import FittedModel
 from .model_fitter import ModelFitter
 from .perturbed import answered, model_record, panel_edges, parabola
+
+
+@contextlib.contextmanager
+def compiling_aside(fitter: ModelFitter) -> Iterator[None]:
+    """Within it another thread compiles the program of `ForceTest`, or reads it, while the joint is fitted alone."""
+    problem = fitter.problem({}, fitter.base)[0]
+
+    def aside() -> None:
+        with contextlib.suppress(Exception):  # what is wrong is raised where the program is asked for
+            ready(problem, first_guess(problem))
+
+    thread = None if sticks_and_slips(problem.system) else threading.Thread(target=aside)
+    with contextlib.ExitStack() as stack:
+        if thread is not None:
+            with contextlib.suppress(RuntimeError):  # no more threads for this user: it is compiled when it is asked for
+                thread.start()
+                stack.callback(thread.join)  # a thread that is left inside the compiler while Python ends takes it along
+        yield
 
 
 class ForceTest:

@@ -51,6 +51,12 @@ def information_beside(
     return schur[: q + count, : q + count], score[: q + count]
 
 
+def ready(problem: Problem, unknowns: Unknowns) -> None:
+    """Compile what `information_beside` will run for at most `TOGETHER` columns."""
+    torques, shown = (np.zeros((len(a), TOGETHER, a.shape[1])) for a in (problem.windows.force, problem.windows.measured))
+    _information.ready(problem, unknowns, torques, shown)  # type: ignore[attr-defined]
+
+
 @kept_jit
 def _information(problem: Problem, unknowns: Unknowns, torques: Array, shown: Array) -> tuple[Array, Array]:
     blocks = linearise(problem, unknowns, shoot(problem, unknowns), Columns(torques, shown))
