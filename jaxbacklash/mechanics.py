@@ -95,14 +95,16 @@ class Wave:
     """A law that is a sine of a coordinate, by the names of its parameters.
 
     Attributes: ``strength`` that the sine is multiplied with; ``phase``; ``frequency`` with which the coordinate is multiplied,
-    None where that is one; ``over``, the coordinate: ``"t"``, ``"y"`` or ``"x"``. Frequency and phase are read off the spectrum
-    of the torque that is missing over that coordinate.
+    None where that is one; ``over``, the coordinate: ``"t"``, ``"y"`` (at the motor's port the motor's own angle) or ``"x"``;
+    ``whole``, whether the frequency is a whole number, of periods in a turn. Frequency and phase are read off the spectrum of the
+    torque that is missing over that coordinate.
     """
 
     strength: str
     phase: str
     frequency: str | None
     over: str
+    whole: bool = False
 
 
 class AbstractEffect(eqx.Module):

@@ -114,12 +114,11 @@ def test_laws_of_a_motor_where_there_is_none_are_refused():
         jb.fit(record.on_its_base(), effects=["coulomb_motor"])
 
 
-@pytest.mark.parametrize("work", [jb.refine, jb.skeleton], ids=["refine", "skeleton"])
-def test_what_does_not_take_drives_says_so(work):
+def test_what_needs_both_encoders_says_so():
     _, record = quick()
     one = jb.Record(record.t, {n: record.channels[n] for n in ("torque", "motor")}, "run.csv", ratio=50.0)
-    with pytest.raises(jb.BadInput, match=r"run\.csv: is of a drive .* does not take so far; wanted jaxbacklash fit"):
-        work(one)
+    with pytest.raises(jb.BadInput, match=r"run\.csv: is of a drive with the encoder of the motor alone, .* both enc"):
+        jb.skeleton(one)
 
 
 def test_a_comparison_wants_both_of_a_drive():

@@ -80,7 +80,7 @@ def rubs(law: type[AbstractEffect]) -> bool:
 
 def shaped(builder: ModelBuilder, model: FittedModel, name: str) -> list[AbstractEffect]:
     """The law at its null strength, at the likeliest of the shapes it may have; at a phase that most rigs have too."""
-    law, form = builder.laws[name], builder.weak_form
+    law, form = builder.laws[name], builder.form_of(name)
     if law.wave is None or form.blind:
         guesses = law.guesses(model.system, form.motion)
         return [null(form.choose(model.system, model.free, guesses)[0])]

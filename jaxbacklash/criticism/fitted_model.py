@@ -59,7 +59,8 @@ class FittedModel:
     def pruned(self) -> System:
         """The fitted system without the laws that stand at their null values."""
         full = self.system
-        bare = System(full.inertia, full.contact, full.damper, {n: full.effects[n] for n in self.names}, full.observed)
+        kept = {n: full.effects[n] for n in self.names}
+        bare = System(full.inertia, full.contact, full.damper, kept, full.observed, motor=full.motor)
         return with_values(bare, values(bare))
 
     @property

@@ -40,7 +40,8 @@ def laws_for(base: System, *, translational: bool | None = None) -> dict[str, ty
 def applicable(law: type[AbstractEffect], base: System) -> bool:
     """Whether a law can act in a joint like this one, and does what the joint alone does not.
 
-    Laws of the motor act in a drive only. Where the transmitted force is measured, friction that sticks in the joint is no
+    Laws of the motor act in a drive only, whose measuring chain is taken as it is so far, and of which no law that remembers is
+    proposed. Where the transmitted force is measured, friction that sticks in the joint is no
     function of the motion, the gain of the force sensor is one with the size of everything, and a low-pass remembers motion
     alone.
     """
@@ -48,6 +49,8 @@ def applicable(law: type[AbstractEffect], base: System) -> bool:
     if base.observed == "T" and ((law.slides and law.port == "joint") or scaled):
         return False
     if law.port == "motor" and base.motor is None:
+        return False
+    if base.motor is not None and (law.states or law.observe is not AbstractEffect.observe or law.lag is not AbstractEffect.lag):
         return False
     kind = "free" if base.contact is None else "play" if base.has_play else "spring"
     return kind in law.joints

@@ -22,6 +22,7 @@ from ..mechanics import AbstractEffect, catalogue
 from ..parameters import specs
 from ..records import Record
 from ..regression.along_motion import own_states
+from ..regression.motor_form import MotorForm
 from ..regression.weak_form import WeakForm
 from ..shooting.levenberg import Levenberg, minimise
 from ..shooting.problem import Problem, Unknowns
@@ -44,7 +45,8 @@ class ModelBuilder:
 
     Attributes: ``windows``, ``layout`` and ``group``, the shooting windows, where they lie in the record, and how many of them
     make a window whose error is quoted; ``quoted``, the same as they were cut, before any noise was taken from a model; ``laws``
-    that may be proposed, by canonical name, and ``static``, those without states; ``weak_form`` of the record; for a record of
+    that may be proposed, by canonical name, and ``static``, those without states; ``weak_form`` of the record, and
+    ``motor_form``, that of a drive's motor; for a record of
     transmitted force ``outright``, laws of friction that may hold the link, and ``gripped``, the joint with them from its force
     loop; ``pace``, the system by whose frequencies windows are cut.
     """
@@ -67,6 +69,7 @@ class ModelBuilder:
         self.static: dict[str, type[AbstractEffect]]
         self.take_laws(laws_for(base))
         self.weak_form = WeakForm(record)
+        self.motor_form = MotorForm(record) if record.kind == "drive" and not record.blind else self.weak_form
         self._scored: dict[int, tuple[FittedModel, Score]] = {}
 
     def take_laws(self, laws: dict[str, type[AbstractEffect]]) -> None:
@@ -81,7 +84,13 @@ class ModelBuilder:
     def sliding(self, port: str) -> np.ndarray:
         """Measured speed (N,) [rad/s] at which friction slides at a port."""
         m = self.weak_form.motion
+        if port == "motor":
+            return np.asarray(m.dx * self.record.ratio)
         return np.asarray(m.dy - m.dx if port == "joint" else m.dy)
+
+    def form_of(self, name: str) -> WeakForm:
+        """The weak form of the balance in which a law shows by itself: at the motor for one at its port, else at the link."""
+        return self.motor_form if self.laws[name].port == "motor" else self.weak_form
 
     def problem(
         self, effects: dict[str, AbstractEffect], joint: System, *, extra: Iterable[str] = (),
@@ -100,8 +109,8 @@ class ModelBuilder:
         quiet = {name: shapes.get(name, law()) for name, law in self.static.items() if name not in effects}
         # Friction that is only judged need not stick; friction in the model does, at its port alone.
         sliding = {e.port for e in effects.values() if e.slides}
-        smoothed = tuple(port for port in ("joint", "ground") if port not in sliding)
-        bare = System(joint.inertia, joint.contact, joint.damper, {}, joint.observed, smoothed)
+        smoothed = tuple(port for port in joint.rows if port not in sliding)
+        bare = System(joint.inertia, joint.contact, joint.damper, {}, joint.observed, smoothed, joint.motor)
         system = bare.with_effects(*quiet.values(), *effects.values())
         free = (*self.base_free, *(n for n in free_names(system, effects) if n.partition(".")[0] in effects), *extra)
         # A torque that is left out acts on the link, and jumps no state inside a law.

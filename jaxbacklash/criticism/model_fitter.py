@@ -18,7 +18,7 @@ from ..mechanics import AbstractEffect
 from ..parameters import values, with_values
 from ..records import Record
 from ..shooting.information import freedom
-from ..shooting.problem import Unknowns
+from ..shooting.problem import Problem, Unknowns
 from ..system import System
 from .evidence import correlation_length, leaves_noise, measures_only
 from .fitted_model import FittedModel
@@ -80,7 +80,8 @@ class ModelFitter(ModelBuilder):
             return self._keep(self._model(in_one_run(problem), frozenset(effects), free))
         unknowns = first_guess(problem)
         if near is not None:
-            starts = read_through(self.windows, np.asarray(near.unknowns.starts[:2]), problem.system, near.system)
+            starts = np.asarray(near.unknowns.starts[: problem.system.mechanical])
+            starts = starts if problem.system.motor else read_through(self.windows, starts, problem.system, near.system)
             unknowns = Unknowns(unknowns.theta, starts, near.unknowns.coefficients)
         if was is not None:
             unknowns = Unknowns(unknowns.theta, was.unknowns.starts, was.unknowns.coefficients)
@@ -127,7 +128,7 @@ class ModelFitter(ModelBuilder):
         inside = float(np.sqrt(np.sum(residual**2) / rows))
         cost = float(np.nan_to_num(stats["cost"], nan=np.inf))
         whole = found.tie >= TIGHTEST
-        count = freedom(problem, tied=True)
+        count, correlation = freedom(problem, tied=True), correlation_length(_by_channel(residual, problem))
         rest = excess(found)
         # What a model leaves out counts as if it were left as misfit by one trajectory.
         misfit = np.sqrt(max(1.0 + rest / count, 0.0))
@@ -137,6 +138,12 @@ class ModelFitter(ModelBuilder):
         return FittedModel(
             with_values(problem.system, dict(zip(values(problem.system), moved))), names, free, found.minimum.value, cost,
             float(misfit), np.asarray(stats["schur"]), np.sum(problem.directions, axis=0), whole,
-            found.converged, len(free) * float(np.log(rows)) + self._doubt(names), correlation_length(residual),
+            found.converged, len(free) * float(np.log(rows)) + self._doubt(names), correlation,
             int(stats["steps"]), found.tie, found.log_evidence, inside, rest, count, found.stops, found, seen,
         )  # fmt: skip
+
+
+def _by_channel(residual: np.ndarray, problem: Problem) -> np.ndarray:
+    """Residuals (W, M C) with each channel's in rows of its own, (C W, M)."""
+    count = len(problem.system.channels)
+    return np.concatenate([residual[:, channel::count] for channel in range(count)])

@@ -78,10 +78,11 @@ def as_it_ended(builder: ModelBuilder, model: FittedModel) -> tuple[Problem, Unk
 
 def model_record(builder: ModelBuilder, predicted: Prediction) -> Record:
     """A fitted trajectory at the samples of the record, the measured one where windows end before it or it runs away."""
-    record = builder.record
-    seen = np.asarray(builder.windows.weight) > 0.0
+    record, names = builder.record, builder.record.observed_names
+    seen = (np.asarray(builder.windows.weight) > 0.0)[:, :: len(names)]
     channels: dict[str, np.ndarray] = {}
-    for name, values in ((record.observed_name, predicted.motion), ("x", predicted.input[:, : builder.windows.samples])):
+    shown = [(name, predicted.motion[:, k :: len(names)]) for k, name in enumerate(names)]
+    for name, values in (*shown, ("x", predicted.input[:, : builder.windows.samples])):
         if name in record.channels and np.shape(values) == seen.shape and not (name == "x" and builder.windows.by_force):
             values, own = np.asarray(values)[seen][: record.samples], record.channels[name]
             # A trajectory that has run away says nothing of where the link was.

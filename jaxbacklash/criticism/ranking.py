@@ -16,7 +16,6 @@ from ..frames import dataframe
 from ..mechanics import AbstractEffect
 from ..parameters import free_specs, specs, values
 from ..precision import require_double_precision
-from ..records.prescribed import require_prescribed
 from ..shooting.problem import Unknowns
 from ..showing import Shown
 from ..system import System
@@ -132,9 +131,8 @@ def rank_effects(fit: Fit, *, window: float | None = None) -> Ranking:
     'gravity'
     """
     require_double_precision("rank_effects")
-    require_prescribed(fit.records, "rank_effects")
     full = fit.system
-    bare = System(full.inertia, full.contact, full.damper, {}, full.observed)
+    bare = System(full.inertia, full.contact, full.damper, {}, full.observed, motor=full.motor)
     own = tuple(name for name in fit.free if name.partition(".")[0] not in full.effects)
     fitter = ModelFitter(fit.records[0], bare, own, window)
     fitter.take_laws(laws_for(bare, translational=fit.translational))

@@ -25,7 +25,6 @@ from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..records.findings.wide_play import wide_play
 from ..records.force import tell_way
-from ..records.prescribed import require_prescribed
 from ..records.relative_motion import check_answers
 from ..records.size import check_size
 from ..regression.equation_error import Start
@@ -93,7 +92,6 @@ def refine(
     (('gravity',), 'complete')
     """
     require_double_precision("refine")
-    require_prescribed([record], "refine")
     record = oriented(record)
     heldout = None if heldout is None else oriented(heldout)
     check_size([record] if heldout is None else [record, heldout])

@@ -124,7 +124,7 @@ def glimpses(builder: ModelBuilder, model: FittedModel, own: WeakForm, keep: int
 
 def products(system: System, m: Motion) -> dict[str, np.ndarray]:
     """Torques (N,) of no law in the catalogue, by what they go with: products of the coordinates of joint, link and base."""
-    now = along(system, *m.rows).now
+    now = along(system.on_its_base(), *m.rows).now
     pressed, touching = np.asarray(now.deflection), np.asarray(now.contact)
     free = 1.0 - touching
     z, dz, y, dy, dx = m.y - m.x, m.dy - m.dx, m.y, m.dy, m.dx

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 import equinox as eqx
 import jax.numpy as jnp
 
-from ..mechanics import AbstractEffect, Instant
+from ..mechanics import AbstractEffect, Instant, Wave
 from ..parameters import Scalar, param
 from .friction import direction
 from .scales import orders
@@ -49,6 +49,7 @@ class Cogging(AbstractEffect):
     P: Scalar = param(unit="1", default=12.0, lower=1.0, scale=1.0, label="periods in a turn of the motor")
     phi: Scalar = param(unit="1", default=0.0, scale=0.1)
     port: ClassVar[str] = "motor"
+    wave: ClassVar[Wave | None] = Wave("A", "phi", "P", "y", whole=True)
 
     @classmethod
     def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:

@@ -298,11 +298,13 @@ def softer(problem: Problem, speeds: Mapping[str, float], share: float, begin: U
     system = with_values(
         problem.system, dict(zip(specs(problem.system), map(float, problem.parameters(np.asarray(begin.theta)))))
     )
-    inertia = float(system.inertia)
+    inertia = {port: float(system.inertia) for port in system.rows}
+    if system.motor is not None:
+        inertia["motor"] = float(system.motor.motor_inertia)
     widths = {law: share * speed for law, speed in speeds.items()}
     deepest = float(np.max(np.abs(problem.windows.measured)))
     levels = {law: _level(system.effects[law], system, deepest) for law in widths}
-    stiff = [law for law, width in widths.items() if levels[law] * step > STABLE * inertia * width]
+    stiff = [law for law, width in widths.items() if levels[law] * step > STABLE * inertia[system.effects[law].port] * width]
     return problem if stiff else with_friction_widths(problem, widths)
 
 

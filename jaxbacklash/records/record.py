@@ -130,6 +130,11 @@ class Record:
             return seen["y"] - seen.get("x", 0.0)
         return seen["link"] - seen["motor"] / self.ratio if {"motor", "link"} <= set(seen) else None
 
+    @property
+    def blind(self) -> bool:
+        """Whether a drive's motor or link is not seen."""
+        return self.kind == "drive" and self.relative is None
+
     def on_its_base(self) -> "Record":
         """A drive with an encoder on motor and link as its joint sees it: the motor behind its gear is the base motion x, the
         link's angle y. Any other record as it is."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import jax
@@ -129,10 +129,12 @@ def _torques(system: System, vector: Any, seeds: Any, rows: Any, substeps: int) 
 
 def _alone(effect: AbstractEffect, joint: System, rows: Any, substeps: int, begun: Any = None) -> Any:
     beside = System(joint.inertia, joint.contact, joint.damper, {canonical_name(effect): effect}, joint.observed)
+    at_motor = effect.port == "motor"  # then the motion is that of the motor
     states = _states(effect, joint, rows, substeps, begun)
 
     def at(t: Any, y: Any, dy: Any, x: Any, dx: Any, own: Any) -> Any:
         now = beside.instant(t, (y, dy), Drive(x, dx))
+        now = replace(now, th=y, dth=dy) if at_motor else now
         torque = effect.torque(now.seen_by(own)) + jnp.zeros_like(y)
         if type(effect).reshape is AbstractEffect.reshape:
             return torque

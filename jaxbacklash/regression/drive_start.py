@@ -23,7 +23,7 @@ def inertias(record: Record) -> tuple[float, float, float]:
     bump = Bump(record.samples, record.dt)
     motor, link = record.channels["motor"], record.channels["link"]
     # What is held from one sample to the next is, on average, half a sample late.
-    torque = bump.against(_centred(record.channels["torque"]), 0)
+    torque = bump.against(centred(record.channels["torque"]), 0)
     columns = np.stack([bump.against(motor, 2), -bump.against(motor, 1), bump.against(link, 2) / record.ratio], axis=1)
     scale = np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
     found = np.linalg.lstsq(columns / scale, torque, rcond=None)[0] / scale
@@ -34,7 +34,7 @@ def inertias(record: Record) -> tuple[float, float, float]:
     return motor_inertia, max(friction, 1e-3 * motor_inertia), inertia
 
 
-def _centred(held: np.ndarray) -> np.ndarray:
+def centred(held: np.ndarray) -> np.ndarray:
     """A held series (N,) as it is on average around each sample."""
     return 0.5 * (held + np.concatenate([held[:1], held[:-1]]))
 

@@ -72,8 +72,9 @@ def read_off(
         if spec is not None:
             seen = own(left)
             if wave.over != "t":
-                known = form.kept(canonical_name(law), lambda: _over_angle(pair, over, spec, finer, most))
+                known = form.kept(canonical_name(law), lambda: _over_angle(pair, over, spec, finer, most, wave.whole))
                 frequency, step = _of_angle(known, seen, own)
+                step = 0.0 if wave.whole else step
 
             def height(frequency: float, own: Any = own, seen: np.ndarray = seen) -> float:
                 return _fall(own(pair(frequency)), seen)
@@ -125,14 +126,20 @@ def _lines(
     return [2.0 * np.pi * float(hertz[k]) for k in sorted(best)], 2.0 * np.pi * float(hertz[1])
 
 
-def _over_angle(pair: Pair, over: np.ndarray, spec: Spec, finer: int, most: int) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies over an angle that a record can tell (K,), and their sines and cosines under the bumps (R, K, 2)."""
+def _over_angle(
+    pair: Pair, over: np.ndarray, spec: Spec, finer: int, most: int, whole: bool
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    """Frequencies over an angle that a record can tell (K,), or ``whole`` ones, and their sines and cosines under the bumps
+    (R, K, 2)."""
+    if whole:
+        frequencies = np.arange(np.ceil(spec.lower), FURTHEST + 1.0)
+        return frequencies, np.stack([pair(float(f)) for f in frequencies], axis=1)
     swing = max(0.5 * float(np.subtract(*np.quantile(over, (0.98, 0.02)))), 1e-9)
     step = 4.0 / (finer * swing)
     least = max(spec.lower, min(1.0 / swing, 0.5 * FURTHEST))
     count = int(np.clip((FURTHEST - least) / step + 1.0, 2, most))
     frequencies = least + step * np.arange(count)
-    return frequencies, np.stack([pair(f) for f in frequencies], axis=1)
+    return frequencies, np.stack([pair(float(f)) for f in frequencies], axis=1)
 
 
 def _of_angle(known: tuple[np.ndarray, np.ndarray], seen: np.ndarray, own: Any) -> tuple[float, float]:

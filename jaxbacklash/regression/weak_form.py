@@ -7,6 +7,7 @@ It is fast and never gets lost, but noise in the motion biases it: it proposes s
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from typing import Any
 
@@ -32,13 +33,19 @@ regression forms, stays within double precision."""
 
 
 class WeakForm(Averaged):
-    """A record averaged under bumps, ready to be regressed on any law."""
+    """A record averaged under bumps, ready to be regressed on any law of its joint and link; a drive's motor is their base, as it
+    was measured.
+
+    Where the link is not seen, or the motor is not, there is nothing to regress on: the form is ``blind``, and the motion of the
+    one behind the gear stands for that of the other.
+    """
 
     def __init__(self, record: Record, *, quicker: WeakForm | None = None) -> None:
-        super().__init__(record, HALF_WIDTH if quicker is None else HALF_WIDTH / QUICKER)
+        seen = _one_for_both(record) if record.blind else record.on_its_base()
+        super().__init__(seen, HALF_WIDTH if quicker is None else HALF_WIDTH / QUICKER)
         self.record = record
-        self.motion: Motion = motion(record) if quicker is None else quicker.motion
-        self.blind = record.kind == "transmitted"  # the link is not seen, so there is nothing to regress on
+        self.motion: Motion = motion(seen) if quicker is None else quicker.motion
+        self.blind = record.blind or record.kind == "transmitted"
         self._columns: dict[str, tuple[np.ndarray, np.ndarray]] = {}
         self._rung: dict[str, tuple[np.ndarray, np.ndarray]] = {}
         self._kept: dict[str, Any] = {}
@@ -67,10 +74,8 @@ class WeakForm(Averaged):
 
     def along(self, system: System, free: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
         """All torque on the link along the motion (N,), and how it changes with each free parameter of the model (q, N)."""
-        names = list(specs(system))
-        seeds = np.zeros((len(free), len(names)))
-        seeds[np.arange(len(free)), [names.index(n) for n in free]] = 1.0
-        torque, columns = torques(system, seeds, self.motion)
+        system = system.on_its_base()
+        torque, columns = torques(system, seeds_of(system, free), self.motion)
         return _bounded(torque), _bounded(columns)
 
     def column(self, effect: AbstractEffect, system: System) -> np.ndarray:
@@ -151,6 +156,18 @@ class WeakForm(Averaged):
         if name not in self._rung or not np.array_equal(self._rung[name][0], told):
             self._rung[name] = told, self.average(_bounded(ringing(variants, system, self.motion))).transpose(0, 2, 1)
         return self._rung[name][1]
+
+
+def seeds_of(parametrised: Any, free: tuple[str, ...]) -> np.ndarray:
+    """Directions (q, p) of free parameters among all that something has, zero for those that it has not."""
+    names = list(specs(parametrised))
+    return np.array([[float(own == name) for own in names] for name in free]).reshape(len(free), len(names))
+
+
+def _one_for_both(record: Record) -> Record:
+    """A drive of which motor or link is not seen, as if no play were between them."""
+    place = record.channels["link"] if "link" in record.channels else record.channels["motor"] / record.ratio
+    return dataclasses.replace(record, channels={"x": place, "y": place}, ratio=1.0, per_kt=False)
 
 
 def _explained(left: np.ndarray, by: np.ndarray, columns: np.ndarray) -> float:

@@ -92,8 +92,8 @@ def _moved_json(step: Moved) -> dict[str, float | None]:
 
 def other_methods(fit: Fit) -> dict[str, Any]:
     """The entry ``cross_check``: other methods beside a fit, the regression of its equation of motion with the effects found."""
-    # Where the link's motion is not in the record there is nothing to regress on.
-    if fit.start is None or not fit.system.effects or fit.records[0].kind == "transmitted":
+    # Where the link's motion is not in the record there is nothing to regress on; a motor's laws are none of its joint.
+    if fit.start is None or not fit.system.effects or fit.records[0].kind in ("transmitted", "drive"):
         return cross_check(fit)
     inertia = None if "inertia" in fit.free else float(fit.system.inertia)
     play, spring = isinstance(fit.system.contact, Contact), fit.system.contact is not None

@@ -28,7 +28,7 @@ from ..parameters import unit_text, values, with_values
 from ..pointwise import along
 from ..precision import require_double_precision
 from ..records import Record
-from ..records.prescribed import require_prescribed
+from ..records.both_encoders import require_relative
 from ..shooting.multiple_shooting import Blocks, Trajectory
 from ..shooting.problem import Problem, Unknowns
 from ..showing import Shown
@@ -128,7 +128,7 @@ class Latent(Shown):
 
 
 def missing_torque(fit: Fit, *, hold: bool = False) -> Latent:
-    """The torque missing from a fitted model, at its records.
+    """The torque missing from a fitted model on its link, at its records; of a drive at the first of them.
 
     Parameters
     ----------
@@ -151,7 +151,11 @@ def missing_torque(fit: Fit, *, hold: bool = False) -> Latent:
     >>> print(jb.missing_torque(fit))
     A torque of ... N m rms is missing, known to ...
     """
-    require_prescribed(fit.records, "missing_torque")
+    require_relative(fit.records, "missing_torque")
+    if fit.system.motor is not None:
+        # On the link, which the motor moves as it was measured: what is missing at the motor's own port does not come into it.
+        joint, record = fit.system.on_its_base(), fit.records[0].on_its_base()
+        return missing_torque_of(joint, record, hold=hold, translational=fit.translational, per_inertia=fit.per_inertia)
     if fit.problem is None or fit.unknowns is None:
         return missing_torque_of(
             fit.system, fit.records[0], hold=hold, translational=fit.translational, per_inertia=fit.per_inertia
