@@ -68,7 +68,8 @@ class WeakForm(Averaged):
         by = self.average(columns)
         for j, name in enumerate(free):
             if name == "inertia":
-                by[j] = -self.acceleration
+                # The base of a drive's joint pushes nothing that was measured: with its inertia free all could be nothing.
+                by[j] = 0.0 if self.record.kind == "drive" else -self.acceleration
         self._last = system, free, (left, by.T)
         return left, by.T
 
