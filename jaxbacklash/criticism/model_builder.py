@@ -11,14 +11,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from ..fitting.fit import prepare
 from ..fitting.left_over import quieter
 from ..fitting.score import Score, begin_anew, score
+from ..fitting.settings import EXPLAINED
 from ..fitting.setup import free_names, make_problem, stick_slip_system
 from ..mechanics import AbstractEffect, catalogue
+from ..one_encoder import one_side
 from ..parameters import specs
 from ..records import Record
 from ..regression.along_motion import own_states
@@ -147,8 +150,14 @@ class ModelBuilder:
         if (known := self._scored.get(id(model))) is not None and known[0] is model:
             return known[1]
         problem, _ = self.problem(self.effects(model), model.system)
-        begin = begin_anew(problem, np.zeros(problem.directions.shape[1]))
-        found = score(problem, begin, self.layout, group=self.group)[0][0]
+        still = np.zeros(problem.directions.shape[1])
+        may_explain = model.misfit < EXPLAINED
+        how: dict[str, Any] = {"group": self.group, "may_explain": may_explain}
+        found = score(problem, begin_anew(problem, still), self.layout, **how)[0][0]
+        if one_side(model.system) and found.rms > EXPLAINED and may_explain:
+            # A motion that the fit has found is one, whether a score from nothing finds it or not.
+            begin = Unknowns(still, model.unknowns.starts, model.unknowns.coefficients)
+            found = min(found, score(problem, begin, self.layout, **how)[0][0], key=lambda told: told.rms)
         self._scored[id(model)] = model, found
         return found
 

@@ -9,15 +9,19 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..fitting.continuation import Continued, continued, in_one_run, sharpened
+from ..fitting.continuation import Continued, continued, in_one_run, sharpened, tied, with_friction_width
 from ..fitting.left_out import excess
-from ..fitting.settings import LOOSE, LOOSEST, MEASURING, MOST_STEPS, SHARP, TIGHTEST
+from ..fitting.search import silent
+from ..fitting.segment import segment
+from ..fitting.settings import EXPLAINED, LOOSE, LOOSEST, MEASURING, MOST_STEPS, ROUGHLY, SHARP, TIGHTEST
 from ..fitting.setup import first_guess, read_through
 from ..fitting.stick_slip import sticks_and_slips
 from ..mechanics import AbstractEffect
+from ..one_encoder import Means, near_by, one_side
 from ..parameters import values, with_values
 from ..records import Record
 from ..shooting.information import freedom
+from ..shooting.levenberg import Levenberg, Minimum, minimise
 from ..shooting.problem import Problem, Unknowns
 from ..system import System
 from .evidence import correlation_length, leaves_noise, measures_only
@@ -78,11 +82,14 @@ class ModelFitter(ModelBuilder):
         if sticks_and_slips(problem.system):
             self._count()
             return self._keep(self._model(in_one_run(problem), frozenset(effects), free))
-        unknowns = first_guess(problem)
-        if near is not None:
+        if near is None:
+            unknowns = first_guess(problem)
+            if one_side(problem.system):
+                unknowns = self._other_side(problem, unknowns, free, self.speeds(effects))
+        else:
             starts = np.asarray(near.unknowns.starts[: problem.system.mechanical])
             starts = starts if problem.system.motor else read_through(self.windows, starts, problem.system, near.system)
-            unknowns = Unknowns(unknowns.theta, starts, near.unknowns.coefficients)
+            unknowns = Unknowns(np.zeros(problem.directions.shape[1]), starts, near.unknowns.coefficients)
         if was is not None:
             unknowns = Unknowns(unknowns.theta, was.unknowns.starts, was.unknowns.coefficients)
         elif any(effect.states for effect in effects.values()):
@@ -93,7 +100,21 @@ class ModelFitter(ModelBuilder):
         richer = near is not None and near.names < frozenset(effects) and not hard
         first = LOOSEST if near is None else near.tie if richer or was is not None else min(near.tie, LOOSE)
         found = continued(problem, unknowns, first=first, speeds=self.speeds(effects))
-        return self._keep(self._model(found, frozenset(effects), free))
+        model = self._keep(self._model(found, frozenset(effects), free))
+        if one_side(problem.system) and near is not None and not leaves_noise(model):
+            # Beside a model that lacks something, the side that no encoder sees is somewhere else: the record says where.
+            return self.fit_model(effects, again=True)
+        return model
+
+    def _other_side(self, problem: Problem, start: Unknowns, free: tuple[str, ...], speeds: dict[str, float]) -> Unknowns:
+        """Unknowns of a drive of which motor or link is not seen, brought near to where that one was by a segment of the record,
+        as `fit` does it, but once."""
+
+        def fitted(at: Problem, tie: float, begin: Unknowns, limit: int) -> Minimum:
+            return minimise(with_friction_width(tied(at, tie), speeds, begin), begin, Levenberg(limit=limit, atol=ROUGHLY))
+
+        means = Means(segment, fitted, EXPLAINED)
+        return near_by(problem, start, free, np.random.default_rng(0), silent, means, tries=1)[0]
 
     def _keep(self, model: FittedModel) -> FittedModel:
         self.steps += sum(stop.steps for stop in model.stops)

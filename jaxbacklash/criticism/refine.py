@@ -20,6 +20,7 @@ from ..fitting.left_over import predict, why_open
 from ..fitting.result import Fit
 from ..fitting.score import Score
 from ..fitting.search import silent
+from ..fitting.settings import EXPLAINED
 from ..fitting.setup import base_system, free_names
 from ..precision import require_double_precision
 from ..records import Record, oriented
@@ -158,7 +159,7 @@ class _Judge:
         problem, free = fitter.problem(fitter.effects(model), model.system)
         still = Unknowns(np.zeros(problem.directions.shape[1]), model.unknowns.starts, model.unknowns.coefficients)
         scored = (fitter.scored(model),)
-        held = None if self.heldout is None else self._predict(problem)
+        held = None if self.heldout is None else self._predict(problem, may_explain=model.misfit < EXPLAINED)
         q = len(free)
         scales = model.scales[:q]
         excess = inflation(model.misfit, scored[0], tied=model.tied, one_run=fitter.grips(model.names))
@@ -184,9 +185,10 @@ class _Judge:
             (why_open(fitter.record, noise[0], scored[0]),), (noise[0] / fitter.noise_factor,),
         )  # fmt: skip
 
-    def _predict(self, problem: Problem) -> Score:
+    def _predict(self, problem: Problem, *, may_explain: bool) -> Score:
         assert self.heldout is not None
         fitter = self.fitter
         prepared = prepare(fitter.pace, [self.heldout], fitter.window, intervals=fitter.quoted[0].intervals)
         known = fitter.noise_factor, fitter.layout.noise[0]
-        return predict(lambda windows: eqx.tree_at(lambda p: p.windows, problem, windows), prepared, self.heldout, known)[0]
+        make = lambda windows: eqx.tree_at(lambda p: p.windows, problem, windows)  # noqa: E731
+        return predict(make, prepared, self.heldout, known, may_explain=may_explain)[0]

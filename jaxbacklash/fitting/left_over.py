@@ -81,7 +81,7 @@ def quieter_elsewhere(noise: float, factor: float, found: float) -> float:
 
 def predict(
     make: Callable[[Windows], Problem], prepared: tuple[Windows, Layout, int], record: Record,
-    known: tuple[float, float] = (1.0, 0.0),
+    known: tuple[float, float] = (1.0, 0.0), *, may_explain: bool = True,
 ) -> tuple[Score, float]:  # fmt: skip
     """How a model with frozen parameters predicts a record of which nothing else is known, and the noise that is taken for it.
 
@@ -92,12 +92,13 @@ def predict(
     record : the record
     known : what a fit to another record of the joint has told of the noise: by which factor it was below what the samples alone
         said, and its standard deviation
+    may_explain : as `score` takes it
     """
     windows, layout, group = prepared
 
     def scored(factor: float) -> Score:
         problem = make(windows if factor == 1.0 else windows.noisier(factor))
-        return score(problem, first_guess(problem), layout, group=group)[0][0]
+        return score(problem, first_guess(problem), layout, group=group, may_explain=may_explain)[0][0]
 
     factor = quieter_elsewhere(layout.noise[0], *known)
     seen = scored(factor)

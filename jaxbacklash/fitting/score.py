@@ -129,8 +129,8 @@ def begin_anew(problem: Problem, theta: Any) -> Unknowns:
 
 
 def score(
-    problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 2, through: bool | None = None
-) -> tuple[tuple[Score, ...], Unknowns]:
+    problem: Problem, unknowns: Unknowns, layout: Layout, *, group: int = 2, through: bool | None = None, may_explain: bool = True
+) -> tuple[tuple[Score, ...], Unknowns]:  # fmt: skip
     """Score the parameters of ``unknowns`` on all windows.
 
     Parameters
@@ -141,6 +141,8 @@ def score(
     group : shooting windows per score window
     through : a record is one trajectory, not one anew in every score window; default for a link that is not seen, whose free
         start would hide what the model lacks
+    may_explain : whether the model may leave noise alone, so that a side that is not seen is worth looking for further where it
+        does not
 
     Returns
     -------
@@ -161,7 +163,7 @@ def score(
     solution = minimise(still, begin, how)
     if float(solution.stats["promise"]) > FURTHER * float(solution.stats["cost"]):
         solution = minimise(still, minimise(tied(still, LOOSE), begin, how).value, how)
-    if one_side(problem.system):
+    if one_side(problem.system) and may_explain:
         solution = _on_the_right_side(still, begin, solution, how)
     found, predicted = solution.value, solution.stats["predicted"]
     scores = tuple(_summarise(still, found, predicted, layout, group, i) for i in range(len(layout.first)))

@@ -15,7 +15,7 @@ from ..compiled import kept_jit
 from ..effects import Contact, Damper, Motor, Spring
 from ..errors import BadInput
 from ..mechanics import AbstractEffect, Drive, canonical_name, catalogue, motion_of
-from ..one_encoder.carried import carried, one_side
+from ..one_encoder.carried import filtered, one_side
 from ..parameters import free_specs, ravel, specs, values, with_values
 from ..records import Record
 from ..regression.along_motion import Motion, own_states
@@ -261,7 +261,7 @@ def first_guess(problem: Problem) -> Unknowns:
     if system.motor is not None:
         zero = np.zeros(problem.directions.shape[1])
         if one_side(system):
-            return Unknowns(zero, np.asarray(carried(problem, zero)[0]), np.asarray(w.coefficients))
+            return Unknowns(zero, filtered(problem, zero)[0], np.asarray(w.coefficients))
         return Unknowns(zero, drive_at_rest(w, system, np.asarray(w.starts)), np.asarray(w.coefficients))
     y, dy = np.asarray(w.starts)
     if system.observed == "T":

@@ -18,13 +18,15 @@ from typing import Any
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 from ..compiled import kept_jit
-from ..mechanics import Drive
+from ..mechanics import AbstractEffect, Drive
+from ..parameters import ravel, specs, values, with_values
 from ..shooting.chunks import scan_used
 from ..shooting.input_spline import local_coefficients
 from ..shooting.multiple_shooting import trajectory
-from ..shooting.problem import Problem
+from ..shooting.problem import Problem, changed
 from ..system import System
 
 Array = Any
@@ -35,6 +37,25 @@ PASSES = 1e-2
 def one_side(system: System) -> bool:
     """Whether this is a drive of which motor or link is not seen."""
     return system.motor is not None and len(system.channels) == 1
+
+
+def filtered(problem: Problem, theta: Array) -> tuple[np.ndarray, float]:
+    """What `carried` says, found without the laws that do nothing at ``theta``: with the whole catalogue it would be some minutes
+    in the compiler."""
+    at = problem.parameters(np.asarray(theta))
+    system = with_values(problem.system, dict(zip(specs(problem.system), map(float, np.asarray(at)))))
+    system = system.without(*(name for name, law in system.effects.items() if not law.states and _is_null(law)))
+    still = np.zeros((ravel(system).size, problem.directions.shape[1]))
+    bare = changed(problem, system=system, base=np.asarray(ravel(system)), directions=still)
+    starts, surprise = carried(bare, np.zeros(still.shape[1]))
+    return np.asarray(starts), float(surprise)
+
+
+def _is_null(law: AbstractEffect) -> bool:
+    """Whether a law stands at the values at which it vanishes."""
+    found = values(law)
+    nulls = {name: spec.null for name, spec in specs(law).items() if spec.null is not None and not spec.fixed}
+    return bool(nulls) and all(float(found[name]) == null for name, null in nulls.items())
 
 
 @kept_jit

@@ -18,7 +18,7 @@ from ..parameters import values
 from ..shooting.information import freedom
 from ..shooting.levenberg import Minimum
 from ..shooting.problem import Problem, Unknowns
-from .carried import carried
+from .carried import filtered
 
 BRISK, TURNS, FEW = 3e-3, 3, 15
 """Weight of the ties with which a segment is brought near, how often from starts found anew, and the steps of each: of the
@@ -107,14 +107,14 @@ def likeliest(part: Problem, free: Sequence[str], rng: np.random.Generator, reac
     for turn, count in enumerate(DRAWN):
         middles = [np.log(theta) for _, theta in tried[:KEPT_BEST]] or [np.zeros(width.size)]
         factors = [drawn(middles[i % len(middles)], width * 0.4**turn) for i in range(count)]
-        tried += [(float(carried(part, factor - 1.0)[1]), factor) for factor in factors]
+        tried += [(filtered(part, factor - 1.0)[1], factor) for factor in factors]
         tried = sorted(((np.nan_to_num(c, nan=np.inf), f) for c, f in tried), key=lambda one: one[0])
     return tried[0][1] - 1.0
 
 
 def _tightened(part: Problem, start: Unknowns, means: Means) -> tuple[Minimum, int]:
-    """Where a segment's fit comes to, and its steps: a few at a time, each from hidden starts found anew; else with ties that
-    are looser at first."""
+    """Where a fit of some windows comes to, and its steps: a few at a time, each from hidden starts found anew; else with ties
+    that are looser at first."""
     steps, best = 0, np.inf
     for _ in range(TURNS):
         ended = means.fitted(part, BRISK, start, FEW)
@@ -137,7 +137,7 @@ def _tightened(part: Problem, start: Unknowns, means: Means) -> tuple[Minimum, i
 
 
 def _carried_on(problem: Problem, theta: np.ndarray) -> Unknowns:
-    return Unknowns(theta, np.asarray(carried(problem, theta)[0]), np.asarray(problem.windows.coefficients))
+    return Unknowns(theta, filtered(problem, theta)[0], np.asarray(problem.windows.coefficients))
 
 
 def _left(ended: Minimum, part: Problem) -> float:
