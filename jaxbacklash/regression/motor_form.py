@@ -34,7 +34,8 @@ class MotorForm(WeakForm):
         spline = fit_spline(t, angle, t[0], span(record.dt) / choose_intervals(t, angle, span(record.dt)))
         still = np.zeros(record.samples)
         self.motion = Motion(t, spline(t), spline(t, 1), still, still, still)
-        self.bend, self.speed = self.average(angle, 2), self.average(angle, 1)
+        # By parts: the bump is even, so that its own first derivative takes the rate off with its sign changed.
+        self.bend, self.speed = self.average(angle, 2), -self.average(angle, 1)
         self.driven = self.average(centred(record.channels["torque"]))
 
     def missing(self, system: System, free: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
@@ -43,7 +44,8 @@ class MotorForm(WeakForm):
         motor, inertia = system.motor, float(system.inertia)
         held: dict[str, AbstractEffect] = {n: e for n, e in system.effects.items() if e.port == "ground"}
         loads = System(system.inertia, None, Damper(0.0), held, "y")
-        on_link, by_load = torques(loads, seeds_of(loads, free), self.link)
+        of_laws = tuple(n if "." in n else "" for n in free)  # not of the joint, which cancels
+        on_link, by_load = torques(loads, seeds_of(loads, of_laws), self.link)
         at_motor, by_motor = self._own(system, free)
         left = float(motor.motor_inertia) * self.bend + float(motor.motor_damping) * self.speed - self.driven
         left = left + (inertia * self.acceleration - self.average(on_link)) / float(motor.ratio) - self.average(at_motor)
