@@ -142,11 +142,11 @@ def main() -> None:
     parser.add_argument("--noise", type=float, nargs="+", default=[1.0, 10.0])
     parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--only", type=int, nargs="*", default=None)
-    parser.add_argument("--tiny", action="store_true", help="one short record")
+    parser.add_argument("--tiny", action="store_true", help="one short record that hides nothing")
     parser.add_argument("--out", type=Path, default=None, help="a file of JSON lines, gone on with where it is there")
     options = parser.parse_args()
     start(brief=True)
-    numbers = [0] if options.tiny else options.only if options.only is not None else range(options.records)
+    numbers = [HIDES.index(0)] if options.tiny else options.only if options.only is not None else range(options.records)
     seconds = 3.0 if options.tiny else options.seconds
     known = {}
     if options.out is not None and options.out.exists():

@@ -157,18 +157,18 @@ def by_length(lengths: tuple[float, ...], rounds: int) -> None:
         print(f"  {length:9.0f}{middle:8.0f}{middle / length:12.2f}")
 
 
-def peak_memory(length: float, folder: Path) -> None:
+def peak_memory(length: float, folder: Path, tiny: bool) -> None:
     """Peak memory of a fresh process that fits one record."""
     path = folder / "long.npz"
     write_record(make_record(length), path)
-    words = [sys.executable, "-m", "benchmarks.fit_speed", "--memory", str(path)]
+    words = [sys.executable, "-m", "benchmarks.fit_speed", "--memory", str(path), *(["--tiny"] if tiny else [])]
     ran = subprocess.run(words, check=True, capture_output=True, text=True)
     print(f"\nPeak memory, a fresh process that fits {length:.0f} s: {ran.stdout.strip()}")
 
 
-def report_memory(path: str) -> None:
+def report_memory(path: str, tiny: bool) -> None:
     """The fresh process: its peak before and after the fit."""
-    jb.start(cache=False)
+    jb.start(cache=tiny, brief=tiny)
     record = jb.read_record(path)
     before = _peak()
     jb.fit(record, inertia=RIG.inertia, starts=1)
@@ -184,11 +184,12 @@ def _peak() -> float:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
-def from_the_shell(lengths: tuple[float, ...], folder: Path, outs: tuple[bool, ...] = (False, True)) -> None:
-    """Wall time of `jaxbacklash fit`, the first call with nothing compiled; the others with other records."""
+def from_the_shell(lengths: tuple[float, ...], folder: Path, tiny: bool) -> None:
+    """Wall time of `jaxbacklash fit`, the first call with nothing compiled; the others with other records. A tiny run takes the
+    programs that are kept."""
     print("\nCommand line, wall time of a fresh process")
-    for out in outs:
-        cache = folder / f"cache_{out}"
+    for out in (True,) if tiny else (False, True):
+        kept = {} if tiny else {"JAXBACKLASH_CACHE": str(folder / f"cache_{out}")}
         for k, length in enumerate(lengths):
             path = folder / f"record_{k}.csv"
             if not path.exists():
@@ -196,8 +197,7 @@ def from_the_shell(lengths: tuple[float, ...], folder: Path, outs: tuple[bool, .
             words = [sys.executable, "-m", "jaxbacklash.cli", "fit", str(path), "--inertia", str(RIG.inertia)]
             words += ["--out", str(folder / f"out_{k}")] if out else []
             begin = time.perf_counter()
-            home = os.environ | {"JAXBACKLASH_CACHE": str(cache)}
-            ran = subprocess.run(words, env=home, capture_output=True, text=True)
+            ran = subprocess.run(words, env=os.environ | kept, capture_output=True, text=True)
             spent = time.perf_counter() - begin
             if ran.returncode:
                 print(f"  jaxbacklash fit failed with code {ran.returncode}: {ran.stderr.strip()[-300:]}")
@@ -208,21 +208,18 @@ def from_the_shell(lengths: tuple[float, ...], folder: Path, outs: tuple[bool, .
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--tiny", action="store_true", help="a short record, few runs")
+    parser.add_argument("--tiny", action="store_true", help="a short record, few runs, programs that are kept already")
     parser.add_argument("--memory", help=argparse.SUPPRESS)
     given = parser.parse_args()
     if given.memory:
-        return report_memory(given.memory)
-    jb.start(cache=False, brief=given.tiny)
+        return report_memory(given.memory, given.tiny)
+    jb.start(cache=given.tiny, brief=given.tiny)
     against_peers(make_record(6.0 if given.tiny else 30.0), 2 if given.tiny else 9)
     by_length(LENGTHS[:1] if given.tiny else LENGTHS, 1 if given.tiny else 3)
     with tempfile.TemporaryDirectory() as folder:
-        peak_memory(10.0 if given.tiny else 600.0, Path(folder))
+        peak_memory(10.0 if given.tiny else 600.0, Path(folder), given.tiny)
         # The second record falls into the first one's compiled sizes, the third does not.
-        if given.tiny:
-            from_the_shell((6.0, 5.0), Path(folder), (True,))
-        else:
-            from_the_shell((30.0, 33.0, 26.0), Path(folder))
+        from_the_shell((6.0, 5.0) if given.tiny else (30.0, 33.0, 26.0), Path(folder), given.tiny)
 
 
 if __name__ == "__main__":

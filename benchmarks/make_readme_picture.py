@@ -130,7 +130,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=ROOT / "readme.svg")
     parser.add_argument("--tiny", action="store_true", help="only see that it works; write into a temporary folder")
     chosen = parser.parse_args()
-    jb.start()
+    jb.start(brief=chosen.tiny)
     before, after = fits()
     text = picture(before, after)
     with tempfile.TemporaryDirectory() as folder:
