@@ -115,7 +115,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=12)
     parser.add_argument("--keep", type=Path, help="the models' exponents are written here, and not found again")
     asked = parser.parse_args()
-    jb.start()
+    jb.start(brief=asked.tiny)
     cases = made(1, 8.0) if asked.tiny else kept(asked.records) if asked.records else made(asked.count, asked.seconds)
     known: dict[str, dict[str, float | None]] = {}
     if asked.keep and asked.keep.exists():

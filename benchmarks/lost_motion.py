@@ -83,7 +83,7 @@ def main() -> None:
     parser.add_argument("--tiny", action="store_true", help="eight rigs, and one of each that does not show")
     parser.add_argument("--each", action="store_true", help="a line for each rig")
     options = parser.parse_args()
-    jb.start()
+    jb.start(brief=options.tiny)
     count = 8 if options.tiny else options.rigs
     shown(shown_rigs(count, options.seed), options.each)
     hidden(hidden_rigs(1 if options.tiny else max(1, count // 12), options.seed), options.each)

@@ -40,7 +40,7 @@ def main() -> None:
     parser.add_argument("--tiny", action="store_true", help="few records and draws")
     given = parser.parse_args()
     size, draws = (LENGTH // 2, 5) if given.tiny else (120, 100)
-    jb.start()
+    jb.start(brief=given.tiny)
     records = [record_of(k, GROWTH * (k >= size)) for k in range(2 * size)]
     each = jb.fit_each(records, inertia=INERTIA)
     shown = [*range(LENGTH // 2), *range(size, size + LENGTH // 2)]

@@ -207,7 +207,7 @@ def main() -> None:
     parser.add_argument("--records", type=int, default=10_000, help="how many there are")
     given = parser.parse_args()
     count, part, alone, rounds = (40, 24, 4, 1) if given.tiny else (given.records, 400, 30, 3)
-    jb.start()
+    jb.start(brief=given.tiny)
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "records"
         folder.mkdir()

@@ -205,7 +205,7 @@ def main() -> None:
 
     import jaxbacklash as jb
 
-    jb.start()
+    jb.start(brief=given.tiny)
     found, referee = by_ours(inverse_alpha, periods, skip, rest), by_taylor(inverse_alpha, periods, skip, rest)
     unlike = compare(f"ours and Taylor series, {periods} periods, {skip} skipped", found, referee)
     longer = LONGER[:1] if given.tiny else LONGER

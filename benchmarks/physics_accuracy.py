@@ -141,7 +141,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--tiny", action="store_true", help="two periods, few settings")
     tiny = parser.parse_args().tiny
-    jb.start()
+    jb.start(brief=tiny)
     oracle()
     chosen = cases()[:1] if tiny else cases()
     periods = 2 if tiny else 24

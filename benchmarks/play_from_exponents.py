@@ -167,7 +167,7 @@ def main() -> None:
     options = parser.parse_args()
     if options.tiny:
         options.fits = 0
-    jb.start()
+    jb.start(brief=options.tiny)
     twin = Twin()
     begun = time.perf_counter()
     map_ = map_of(twin, options.tiny)

@@ -146,9 +146,9 @@ def main() -> None:
     parser.add_argument("--limit", type=float, default=120.0)
     parser.add_argument("--cold", action="store_true")
     parser.add_argument("--out", type=Path, default=None)
-    parser.add_argument("--tiny", action="store_true", help="one short record of two kinds")
+    parser.add_argument("--tiny", action="store_true", help="one short record of one kind")
     options = parser.parse_args()
-    kinds = ["hardening_spring", "two_modes"] if options.tiny else options.kinds
+    kinds = ["hardening_spring"] if options.tiny else options.kinds
     seeds = [options.seed] if options.tiny else options.only or range(options.seed, options.seed + options.records)
     size, worker, rows = 0.3 if options.tiny else 1.0, Worker(), []
     for kind in kinds:

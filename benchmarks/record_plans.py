@@ -78,8 +78,9 @@ def told(plan: Plan) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--tiny", action="store_true", help="two plans instead of all")
-    plans = PLANS[:2] if parser.parse_args().tiny else PLANS
-    jb.start()
+    tiny = parser.parse_args().tiny
+    plans = PLANS[:2] if tiny else PLANS
+    jb.start(brief=tiny)
     print(f"{'plan':30}{'play':>18}  {'stiffness':>18}  {'damping':>18}  {'rms/noise':>9}")
     for plan in plans:
         changed = [f"{one.name} {getattr(plan, one.name):g}" for one in fields(plan) if getattr(plan, one.name) != one.default]

@@ -58,7 +58,7 @@ def main() -> None:
     parser.add_argument("--rigs", type=int, default=12)
     parser.add_argument("--tiny", action="store_true", help="one rig of 15 s")
     options = parser.parse_args()
-    jb.start()
+    jb.start(brief=options.tiny)
     count, seconds = (1, 15.0) if options.tiny else (options.rigs, 30.0)
     total = {method: np.zeros(3, int) for method in METHODS}
     rigs = lru_cache(maxsize=None)(lambda seed, spread: twin(seed, seconds=seconds, damping=spread))

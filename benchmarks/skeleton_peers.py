@@ -85,7 +85,7 @@ def main() -> None:
     parser.add_argument("--twins", type=int, default=6)
     parser.add_argument("--tiny", action="store_true", help="shorter signals, one twin")
     options = parser.parse_args()
-    jb.start()
+    jb.start(brief=options.tiny)
     warnings.simplefilter("ignore")
     grid = frequency_grid(0.8, 40.0, 12)
     seconds = 12.0 if options.tiny else 30.0

@@ -96,7 +96,7 @@ def main() -> None:
     parser.add_argument("--tiny", action="store_true", help="two rigs of 15 s")
     parser.add_argument("--no-fit", action="store_true", help="without the fit by simulation")
     options = parser.parse_args()
-    jb.start()
+    jb.start(brief=options.tiny)
     count, seconds = (2, 15.0) if options.tiny else (options.rigs, 30.0)
     rows: dict[str, list[Row]] = {}
     clock, lost, left_out = {"skeleton": 0.0, "fit": 0.0}, {"hilbert": 0, "wavelet": 0}, 0

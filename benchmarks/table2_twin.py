@@ -234,7 +234,7 @@ def main() -> None:
     for name, value in vars(Twin()).items():
         parser.add_argument(f"--{name}", type=float, default=value)
     options = parser.parse_args()
-    jb.start()
+    jb.start(brief=options.tiny)
     if not options.search:
         twin = Twin(options.gravity, options.contact, options.zeta, options.play)
         tangent = tangent_table(twin, options.tiny)

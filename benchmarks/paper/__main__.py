@@ -52,7 +52,7 @@ def main() -> None:
     parser.add_argument("--tiny", action="store_true", help="only see that it works, in a temporary folder")
     parser.add_argument("--keep", action="store_true", help="write the JSON files for the site as well")
     chosen = parser.parse_args()
-    jb.start()
+    jb.start(brief=chosen.tiny)
     begun = time.perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) if chosen.tiny else chosen.out
