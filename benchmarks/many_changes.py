@@ -42,7 +42,8 @@ def main() -> None:
     size, draws = (LENGTH // 2, 5) if given.tiny else (120, 100)
     jb.start(brief=given.tiny)
     records = [record_of(k, GROWTH * (k >= size)) for k in range(2 * size)]
-    each = jb.fit_each(records, inertia=INERTIA)
+    # Two processes that begin together compile the same programs, each for itself.
+    each = jb.fit_each(records, inertia=INERTIA, workers=1 if given.tiny else None)
     shown = [*range(LENGTH // 2), *range(size, size + LENGTH // 2)]
     print(jb.Each("fit", tuple(each.rows[k] for k in shown)))
     values, errors = each.numbers("backlash"), each.numbers("backlash", "stderr")

@@ -32,7 +32,7 @@ def items(tiny: bool) -> Iterator[Item]:
     yield from sweep.items()
     yield hammer.item()
     yield from envelopes.items()
-    yield restoring.item()
+    yield restoring.item(tiny)
     levels, rows = drive_levels.items(tiny)
     yield from levels
     yield from cleaning.items(rows, drive_levels.SHORT_RATE if tiny else drive_levels.RATE, tiny)
