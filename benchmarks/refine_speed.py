@@ -76,7 +76,7 @@ def main() -> None:
     parser.add_argument("--duration", type=float, default=DURATION, help="of each record [s]")
     parser.add_argument("--tiny", action="store_true", help="one short record, one warm run, the cache that is there")
     options = parser.parse_args()
-    effects, runs, duration = (["gravity"], 1, 6.0) if options.tiny else (options.effects, options.runs, options.duration)
+    effects, runs, duration = (["gravity"], 1, 8.0) if options.tiny else (options.effects, options.runs, options.duration)
     with tempfile.TemporaryDirectory() as folder:
         for effect in effects:
             measure_case(Path(folder), options.draw, effect, duration, runs, empty=not options.tiny)
