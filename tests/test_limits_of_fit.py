@@ -8,10 +8,12 @@ import jaxbacklash as jb
 from jaxbacklash.criticism.evidence_search import EvidenceSearch
 from jaxbacklash.criticism.model_builder import ModelBuilder
 from jaxbacklash.criticism.model_fitter import ModelFitter
-from jaxbacklash.effects import Contact, Damper
+from jaxbacklash.effects import Contact, Dahl, Damper
 from jaxbacklash.fitting.estimates import judge
+from jaxbacklash.fitting.fit import prepare
 from jaxbacklash.fitting.hard import reach_of_sampling
-from jaxbacklash.fitting.setup import base_system
+from jaxbacklash.fitting.setup import as_stiff_as_can_be, base_system, make_problem
+from jaxbacklash.parameters import with_values
 from jaxbacklash.records.relative_motion import check_answers
 from jaxbacklash.records.size import MOST_SAMPLES, check_size, needed_rate
 from jaxbacklash.system import System
@@ -148,3 +150,25 @@ def test_contacts_between_two_samples_leave_the_play_told():
         assert abs(play.value - 0.02) < 4.0 * play.stderr
     assert damping.value is None
     assert "what they lose is taken for it" in damping.why
+
+
+def test_a_stiffness_that_no_step_follows_gets_no_interval():
+    """At the bound that the integration sets, an interval would be one of the bound and not of the record."""
+    joint = jb.base_motion_joint(inertia=3.16, backlash=0.026, stiffness=15000.0, damping=20.0)
+    record = jb.demo_records()[0].between(0.0, 2.0)
+    free = ("stiffness", "dahl.Fc", "dahl.sigma")
+    system = joint.with_effects(Dahl(1.0, 1e4))
+    windows, _, _ = prepare(system, [record], None)
+    problem = make_problem(system, windows, free)
+    highest = float(problem.directions[:, 2].sum() * problem.upper[2] + 1e4)
+    told = {}
+    for sigma in (1e4, highest):
+        ended = with_values(system, {"dahl.sigma": sigma})
+        stiffest = as_stiff_as_can_be(problem, ended, free)
+        told[sigma] = judge(
+            ended, free, dict.fromkeys(free, 1.0), [record], per_inertia=False, translational=False, stiffest=stiffest
+        )["dahl.sigma"]
+    assert told[1e4].verdict == "found"
+    assert told[highest].ci95 is None
+    assert told[highest].value is None
+    assert "or above, and the integration's step follows no more" in told[highest].why

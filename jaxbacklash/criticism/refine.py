@@ -21,7 +21,7 @@ from ..fitting.result import Fit
 from ..fitting.score import Score
 from ..fitting.search import silent
 from ..fitting.settings import EXPLAINED
-from ..fitting.setup import base_system, free_names
+from ..fitting.setup import as_stiff_as_can_be, base_system, free_names
 from ..precision import require_double_precision
 from ..records import Record, oriented
 from ..records.findings.wide_play import wide_play
@@ -176,6 +176,7 @@ class _Judge:
             translational=self.translational,
             covariance=covariance,
             explained=explains(scored, system),
+            stiffest=as_stiff_as_can_be(problem if model.found is None else model.found.problem, system, free),
         )
         joined = tied(problem, model.tie if model.tied else 0.0)
         noise = fitter.layout.noise

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from statistics import NormalDist
 from typing import Any
@@ -142,13 +142,15 @@ def judge(
     translational: bool,
     covariance: np.ndarray | None = None,
     explained: bool = True,
+    stiffest: Collection[str] = (),
 ) -> dict[str, Estimate]:
     """Estimates with verdicts.
 
     A stiffness that does not stand clear of its error, or a play that no sample leaves, was not determined; a play met on
     one side only is one-sided: the record tells where that edge is, not how far away the other one lies. Of two parameters
     whose errors are one, by the ``covariance`` (q, q) in the order of ``free``, neither was. Of a model that leaves more than
-    noise (not ``explained``) no bound is told, as that would hold only if the model were right.
+    noise (not ``explained``) no bound is told, as that would hold only if the model were right. Of the ``stiffest``, stiffnesses
+    that ended where a step of the integration follows no further, only that is told.
     """
     described, present = specs(system), values(system)
     length = "m" if translational else "rad"
@@ -168,7 +170,9 @@ def judge(
         unit = per_kt(unit) if records[0].per_kt else unit
         value = present[name]
         verdict, why = reasons.get(name, (FOUND, ""))
-        if verdict == FOUND and not np.isfinite(error):
+        if verdict == FOUND and name in stiffest:
+            verdict, why = UNDETERMINED, f"it is {value:.3g} {unit} or above, and the integration's step follows no more"
+        elif verdict == FOUND and not np.isfinite(error):
             verdict, why = UNDETERMINED, "this record does not change with it"
         elif verdict == FOUND and (spec.positive or name in BOUNDED) and error > MOST_UNCERTAIN * abs(value):
             verdict, why = UNDETERMINED, "its standard error exceeds half of its value"

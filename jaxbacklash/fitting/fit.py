@@ -32,7 +32,7 @@ from .result import Fit
 from .score import Score, begin_anew, score
 from .search import Found, search, silent
 from .settings import EXPLAINED, SHORTEST
-from .setup import base_system, check_motion, free_names, make_problem
+from .setup import as_stiff_as_can_be, base_system, check_motion, free_names, make_problem
 from .stick_slip import sticks_and_slips
 
 ABSOLUTE = ("force", "transmitted", "drive")
@@ -159,6 +159,7 @@ def fit(
     estimates = judge(
         fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational, covariance=covariance,
         explained=explains(scored, fitted) and joined(found.tied, fitted),
+        stiffest=as_stiff_as_can_be(problem, fitted, names),
     )  # fmt: skip
     if not sticks_and_slips(system) and contact_samples(fitted, chosen[0].dt) < SHORTEST:
         estimates |= _between_samples(estimates, fitted, chosen, missed=scored[0].rms > EXPLAINED)

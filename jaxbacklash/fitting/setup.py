@@ -226,7 +226,7 @@ def make_problem(system: System, windows: Windows, free: Sequence[str], *, tie: 
     friction that gives hardly at all before it slips would be integrated into anything.
     """
     described, present = specs(system), values(system)
-    stiffest = float(system.reduced_inertia) * (STABLE / (0.5 * float(windows.panel))) ** 2
+    stiffest = _stiffest(system, windows)
     names = list(described)
     base = ravel(system)
     directions = np.zeros((base.size, len(free)))
@@ -250,6 +250,18 @@ def make_problem(system: System, windows: Windows, free: Sequence[str], *, tie: 
         np.asarray(float(tie)),
         np.asarray(len(free)),
     )
+
+
+def _stiffest(system: System, windows: Windows) -> float:
+    """The stiffness [N m/rad] with which the link swings as fast as a step of the integration can follow."""
+    return float(system.reduced_inertia) * (STABLE / (0.5 * float(windows.panel))) ** 2
+
+
+def as_stiff_as_can_be(problem: Problem, system: System, free: Sequence[str]) -> frozenset[str]:
+    """Free parameters of a fitted system at the bound that `make_problem` sets to the stiffness of laws: the record may ask for
+    more of them."""
+    most, described, present = (1.0 - 1e-6) * _stiffest(problem.system, problem.windows), specs(system), values(system)
+    return frozenset(n for n in free if "." in n and described[n].unit == "N m/rad" and present[n] >= most)
 
 
 def first_guess(problem: Problem) -> Unknowns:
