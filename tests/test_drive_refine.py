@@ -18,6 +18,7 @@ from jaxbacklash.parameters import values, with_values
 from jaxbacklash.regression.motor_form import MotorForm
 from jaxbacklash.regression.spectrum import read_off
 from jaxbacklash.regression.weak_form import WeakForm
+from jaxbacklash.residuals.at_motor import missing_at_motor
 from jaxbacklash.system import System
 from tests.independent.drives import DriveRig, random_rig, servo_record
 
@@ -48,6 +49,20 @@ def test_the_true_drive_leaves_nothing_at_its_motor():
     assert np.std(left) < 0.1 * np.std(without)
     assert by.shape == (left.size, len(FREE))
     assert np.all(by[:, 1:4] == 0.0)  # the joint cancels
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_what_is_missing_at_the_motor_is_told_apart_from_noise(seed):
+    rig, clean = made({}, seed=seed)
+    friction = 3.0 * rig.inertia / rig.ratio
+    assert not missing_at_motor(drive_of(rig), FREE, clean).evident
+    _, rubbing = made({"coulomb_motor": {"Tc": friction}}, seed=seed)
+    found = missing_at_motor(drive_of(rig), FREE, rubbing)
+    assert found.evident
+    assert found.by_direction > 0.9
+    assert "goes with the direction in which the motor turns" in str(found)
+    assert 0.2 * friction < found.rms < friction  # its viscous part is taken for the motor's own
+    assert missing_at_motor(drive_of(rig).on_its_base(), FREE, rubbing) is None
 
 
 def test_how_the_rest_at_the_motor_falls_is_what_differences_say():

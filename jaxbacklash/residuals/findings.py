@@ -10,11 +10,12 @@ import numpy as np
 from ..fitting import Fit, error_in_words
 from ..frames import dataframe
 from ..showing import Shown
+from .at_motor import AtMotor, missing_at_motor
 from .failures import Dependence, depends
 from .latent import Latent, missing_torque
 from .surface import Surface, explain_torque
 from .transmitted import explain_force, missing_force
-from .words import NOISE, headline, sentences
+from .words import NOISE, NONE_ON_LINK, headline, sentences
 
 
 @dataclass(frozen=True)
@@ -23,7 +24,8 @@ class Findings(Shown):
 
     Attributes: ``sentences`` for a person, most telling first; a single one where nothing fails; ``dependences`` every question
     that was asked (`Dependence`), strongest first; ``latent`` the missing torque, ``surface`` its best coordinates (None
-    where no torque is missing); ``misfit``, ``median`` of the prediction error over the noise.
+    where no torque is missing on the link); ``misfit``, ``median`` of the prediction error over the noise; ``at_motor``, what is
+    missing at the motor of a drive, None where nothing is.
     """
 
     sentences: tuple[str, ...]
@@ -32,16 +34,17 @@ class Findings(Shown):
     surface: Surface | None
     misfit: float
     median: float
+    at_motor: AtMotor | None = None
 
     @property
     def adequate(self) -> bool:
         """True when what the model leaves is noise."""
-        return self.surface is None
+        return self.surface is None and self.at_motor is None
 
     @property
     def significant(self) -> tuple[Dependence, ...]:
         """The dependences that chance does not explain."""
-        return () if self.adequate else tuple(found for found in self.dependences if found.significant)
+        return () if self.surface is None else tuple(found for found in self.dependences if found.significant)
 
     def __str__(self) -> str:
         return "\n".join(self.sentences)
@@ -79,6 +82,9 @@ class Findings(Shown):
                 name: {"fitted": a, "beside_torque": b} for name, (a, b) in surface.moved.items()
             },
         }  # fmt: skip
+        if self.at_motor is not None:
+            motor = self.at_motor
+            told["at_motor"] = {"rms": motor.rms, "noise": motor.noise, "by_direction": motor.by_direction}
         return {"findings": list(self.sentences), "latent_torque": told}
 
 
@@ -110,14 +116,22 @@ def where_it_fails(fit: Fit, latent: Latent | None = None, surface: Surface | No
     seen = fit.records[0].kind == "transmitted"
     if latent is None:
         latent = missing_force(fit) if seen else missing_torque(fit)
+    at_motor = missing_at_motor(fit.system, fit.free, fit.records[0])
+    if at_motor is not None and not at_motor.evident:
+        at_motor = None
+    errors = fit.score.rms, fit.score.median
     if not latent.evident:
         asked = depends(latent, latent.torque, _misfit(fit, latent))
-        return Findings((NOISE.format(**_numbers(fit, latent)),), tuple(asked), latent, None, fit.score.rms, fit.score.median)
+        numbers = _numbers(fit, latent)
+        told: tuple[str, ...] = (NOISE.format(**numbers),)
+        if at_motor is not None:
+            told = (f"The misfit is {numbers['error']}. {at_motor}", NONE_ON_LINK.format(**numbers))
+        return Findings(told, tuple(asked), latent, None, *errors, at_motor)
     if surface is None:
         surface = explain_force(latent) if seen else explain_torque(latent)
     asked = depends(latent, surface.torque, _misfit(fit, latent))
-    told = (headline(fit, surface), *sentences(surface, asked))
-    return Findings(told, tuple(asked), latent, surface, fit.score.rms, fit.score.median)
+    told = (headline(fit, surface), *sentences(surface, asked), *([] if at_motor is None else [str(at_motor)]))
+    return Findings(told, tuple(asked), latent, surface, *errors, at_motor)
 
 
 def _numbers(fit: Fit, latent: Latent) -> dict[str, Any]:

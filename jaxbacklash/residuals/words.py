@@ -11,6 +11,7 @@ from .failures import PLACES, Dependence
 from .surface import Surface
 
 NOISE = "What is left is noise: the error is {error}, and no torque is missing beyond {bound:.2g} {unit}."
+NONE_ON_LINK = "On the link no torque is missing beyond {bound:.2g} {unit}."
 STRONG = 0.1
 """Share of the variance of ranks below which a dependence is not worth a sentence."""
 

@@ -33,6 +33,10 @@ class Bump:
         bump = self._orders[order]
         return np.lib.stride_tricks.sliding_window_view(values, bump.size, axis=-1)[..., :: self.stride, :] @ bump
 
+    def loudness(self, order: int = 0) -> float:
+        """Standard deviation of what `against` makes of white noise of deviation 1."""
+        return float(np.linalg.norm(self._orders[order]))
+
     def passes(self, hertz: np.ndarray) -> np.ndarray:
         """Share of a sine that stays of it under the bump, by its frequency (F,) [Hz]."""
         bump = self._orders[0]

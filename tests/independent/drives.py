@@ -16,8 +16,8 @@ from tests.independent.kernel import njit
 # Columns of the parameter vector; zero is the null value of every law.
 (
     JM, CM, RATIO, J, B, K, C, TC_MOTOR, COG, COG_P, COG_PHI, TC_JOINT, TC_GROUND, G, PHI0, T0, RIPPLE, RIPPLE_N, RIPPLE_PHI,
-    TE, TE_M, TE_PSI, K3, CC, DRAG, Z0, K1, MU, SIZE,
-) = range(29)  # fmt: skip
+    TE, TE_M, TE_PSI, K3, CC, DRAG, Z0, K1, MU, FAN, RUB, SIZE,
+) = range(31)  # fmt: skip
 
 COLUMNS = {
     "coulomb_motor": {"Tc": TC_MOTOR},
@@ -34,7 +34,12 @@ COLUMNS = {
     "asymmetric_gap": {"z0": Z0},
     "gap_spring": {"k1": K1},
     "load_friction": {"mu": MU},
+    "motor_fan": {"q": FAN},
+    "swing_damping": {"c": RUB},
 }
+OUTSIDE = ("motor_fan", "swing_damping")
+"""Of these no law of the catalogue: drag of the motor with the square of its speed, and damping of the link that grows with the
+square of its angle."""
 
 
 @dataclass(frozen=True)
@@ -84,8 +89,8 @@ def _torques(p, th, dth, y, dy, tau):
     touch = 1.0 if press != 0.0 else 0.0
     joint = p[K] * press + p[C] * dz + p[K3] * press**3 + p[CC] * touch * dz + p[K1] * z
     ground = p[G] * np.sin(y + p[PHI0]) + p[T0] + p[RIPPLE] * np.sin(p[RIPPLE_N] * y + p[RIPPLE_PHI])
-    ground -= p[DRAG] * abs(dy) * dy
-    motor = tau - p[CM] * dth + p[COG] * np.sin(p[COG_P] * th + p[COG_PHI])
+    ground -= p[DRAG] * abs(dy) * dy + p[RUB] * y**2 * dy
+    motor = tau - p[CM] * dth - p[FAN] * abs(dth) * dth + p[COG] * np.sin(p[COG_P] * th + p[COG_PHI])
     return motor + joint / p[RATIO], ground - joint, abs(p[K] * press)
 
 

@@ -1,0 +1,75 @@
+r"""The torque that is missing at the motor of a drive, apart from that on its link.
+
+What `jaxbacklash.residuals.latent` finds acts on the link, whose base the motor moves as it was measured. Here the balance of the
+whole, from which the joint cancels (`jaxbacklash.regression.motor_form`), is set against what the noise of torque and encoders
+would leave of it. `where_it_fails` tells both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..records import Record
+from ..regression.motor_form import MotorForm
+from ..shooting.torque_input import channel_noise, torque_noise
+from ..system import System
+
+EVIDENT = 2.0
+"""How many times what noise leaves has to be left for a torque to be missing: encoders whose noise is rounding leave it a fifth
+larger or smaller."""
+MOSTLY = 0.5
+"""Share of a torque from which on what it goes with is told."""
+
+
+@dataclass(frozen=True)
+class AtMotor:
+    """A torque missing at the motor's port: ``rms`` and what ``noise`` would leave of it [N m]; ``by_direction``, the share of
+    its variance that goes with the direction in which the motor turns."""
+
+    rms: float
+    noise: float
+    by_direction: float
+
+    @property
+    def evident(self) -> bool:
+        """Whether it is more than noise."""
+        return self.rms > EVIDENT * self.noise
+
+    def __str__(self) -> str:
+        goes = f"; {100 * self.by_direction:.0f} % of it goes with the direction in which the motor turns, as dry friction does"
+        return f"At the motor a torque of {self.rms:.3g} N m rms is missing{goes if self.by_direction > MOSTLY else ''}."
+
+
+def missing_at_motor(system: System, free: tuple[str, ...], record: Record) -> AtMotor | None:
+    """What is missing at the motor of a fitted drive, on average over a tenth of a second; None where there is no motor or one
+    side has no encoder.
+
+    Parameters
+    ----------
+    system : as it was fitted
+    free : the parameters that were
+    record : of the drive
+
+    Examples
+    --------
+    >>> found = missing_at_motor(fit.system, fit.free, fit.records[0])  # doctest: +SKIP
+    >>> print(found)  # doctest: +SKIP
+    At the motor a torque of 0.0543 N m rms is missing; 99 % of it goes with the direction in which the motor turns, ...
+    """
+    motor = system.motor
+    if motor is None or record.blind:
+        return None
+    form = MotorForm(record)
+    left, by = form.missing(system, free)
+    rest = left - by @ np.linalg.lstsq(by, left, rcond=None)[0]
+    direction = form.average(np.sign(form.motion.dy))
+    apart = direction - by @ np.linalg.lstsq(by, direction, rcond=None)[0]
+    energy = float(rest @ rest)
+    share = float(rest @ apart) ** 2 / max(float(apart @ apart) * energy, 1e-300)
+    whole = float(form.average(np.ones(record.samples))[0])
+    of_link = float(system.inertia) / float(motor.ratio) * channel_noise(record, "link")
+    of_motor = float(motor.motor_inertia) * channel_noise(record, "motor")
+    noise = np.hypot(torque_noise(record) * form.loudness(0), np.hypot(of_link, of_motor) * form.loudness(2))
+    return AtMotor(float(np.sqrt(energy / rest.size)) / whole, float(noise) / whole, share)
