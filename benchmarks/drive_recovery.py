@@ -70,7 +70,7 @@ def hidden_set(rng: np.random.Generator, number: int) -> tuple[str, ...]:
     """Names of what a record hides; single laws go through the catalogue by turns."""
     count, turn = HIDES[number % len(HIDES)], number // len(HIDES)
     if count is None:
-        return (OUTSIDE[turn % len(OUTSIDE)],)
+        return (tuple(OUTSIDE)[turn % len(OUTSIDE)],)
     if count == 1:
         alone = sum(h == 1 for h in HIDES) * turn + sum(h == 1 for h in HIDES[: number % len(HIDES)])
         return (LAWS[alone % len(LAWS)],)

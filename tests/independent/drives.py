@@ -34,12 +34,10 @@ COLUMNS = {
     "asymmetric_gap": {"z0": Z0},
     "gap_spring": {"k1": K1},
     "load_friction": {"mu": MU},
-    "motor_fan": {"q": FAN},
-    "swing_damping": {"c": RUB},
 }
-OUTSIDE = ("motor_fan", "swing_damping")
-"""Of these no law of the catalogue: drag of the motor with the square of its speed, and damping of the link that grows with the
-square of its angle."""
+OUTSIDE = {"motor_fan": {"q": FAN}, "swing_damping": {"c": RUB}}
+"""No laws of the catalogue: drag of the motor with the square of its speed, and damping of the link that grows with the square of
+its angle."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,7 @@ def packed(rig: DriveRig, effects: dict[str, dict[str, float]]) -> np.ndarray:
     p[[J, B, K, C]] = rig.inertia, rig.backlash, rig.stiffness, rig.damping
     for name, given in effects.items():
         for key, value in given.items():
-            p[COLUMNS[name][key]] = value
+            p[(COLUMNS | OUTSIDE)[name][key]] = value
     return p
 
 
