@@ -45,18 +45,19 @@ class Motion:
 
 def motion(record: Record) -> Motion:
     """Smoothed motion of link and base."""
-    t, zero, window = record.t, np.zeros(record.samples), span(record.dt)
-
-    def smooth(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        if not np.any(values):
-            return zero, zero
-        spline = fit_spline(t, values, t[0], window / choose_intervals(t, values, window))
-        return spline(t), spline(t, 1)
-
-    x, dx = smooth(record.channels.get("x", zero))
-    seen, rate = smooth(record.channels[record.observed_name])
+    x, dx = smooth(record.t, record.channels.get("x", np.zeros(record.samples)))
+    seen, rate = smooth(record.t, record.channels[record.observed_name])
     y, dy = (seen + x, rate + dx) if record.observed_name == "z" else (seen, rate)
-    return Motion(t, y, dy, x, dx, force_edges(record, 1))
+    return Motion(record.t, y, dy, x, dx, force_edges(record, 1))
+
+
+def smooth(t: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A measured angle (N,) without its noise, and its rate."""
+    if not np.any(values):
+        return np.zeros_like(values), np.zeros_like(values)
+    window = span(float((t[-1] - t[0]) / (t.size - 1)))
+    spline = fit_spline(t, values, t[0], window / choose_intervals(t, values, window))
+    return spline(t), spline(t, 1)
 
 
 def torques(system: System, seeds: np.ndarray, m: Motion) -> tuple[np.ndarray, np.ndarray]:

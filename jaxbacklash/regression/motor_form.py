@@ -14,9 +14,8 @@ import numpy as np
 from ..effects.contact import Damper
 from ..mechanics import AbstractEffect
 from ..records import Record
-from ..signals import choose_intervals, fit_spline, span
 from ..system import System
-from .along_motion import Motion, own_tangents, torques
+from .along_motion import Motion, own_tangents, smooth, torques
 from .drive_start import centred
 from .weak_form import WeakForm, seeds_of
 
@@ -30,10 +29,8 @@ class MotorForm(WeakForm):
     def __init__(self, record: Record) -> None:
         super().__init__(record)
         self.link = self.motion
-        angle, t = record.channels["motor"], record.t
-        spline = fit_spline(t, angle, t[0], span(record.dt) / choose_intervals(t, angle, span(record.dt)))
-        still = np.zeros(record.samples)
-        self.motion = Motion(t, spline(t), spline(t, 1), still, still, still)
+        angle, still = record.channels["motor"], np.zeros(record.samples)
+        self.motion = Motion(record.t, *smooth(record.t, angle), still, still, still)
         # By parts: the bump is even, so that its own first derivative takes the rate off with its sign changed.
         self.bend, self.speed = self.average(angle, 2), -self.average(angle, 1)
         self.driven = self.average(centred(record.channels["torque"]))
