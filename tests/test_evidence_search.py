@@ -1,5 +1,7 @@
 """The search by evidence: what hides is named, what does not is not, and what is outside the catalogue leaves a torque out."""
 
+from dataclasses import replace
+
 import pytest
 
 from jaxbacklash.criticism.evidence_search import EvidenceSearch
@@ -33,6 +35,17 @@ def test_a_hidden_weight_is_named_at_its_size():
     assert model.tied
     assert model.value["gravity.G"] == pytest.approx(effects["gravity"]["G"], rel=0.02)
     assert search.path[0].evidence["gravity"] > search.demand
+
+
+@pytest.mark.slow
+def test_a_fit_that_has_not_arrived_is_begun_again_from_a_model_that_contains_it():
+    search, model, *_ = searched("gravity", "multisine", 4, G=20.0)
+    fitter, gravity = search.fitter, search.fitter.effects(model)
+    lost = fitter.fitted[model.names] = replace(model, log_evidence=model.log_evidence - 5e3, converged=False)
+    assert fitter.fit_model(gravity) is lost
+    larger = fitter.fit_model({**gravity, "preload": fitter.laws["preload"]()}, model)
+    assert fitter.fit_model(gravity, larger).criterion == pytest.approx(model.criterion, abs=0.5)
+    assert fitter.fitted[model.names].converged
 
 
 @pytest.mark.slow

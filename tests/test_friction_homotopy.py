@@ -4,9 +4,11 @@ from dataclasses import replace
 
 import equinox as eqx
 import numpy as np
+import pytest
 
+from jaxbacklash.fitting.continuation import softer
 from jaxbacklash.fitting.fit import prepare
-from jaxbacklash.fitting.friction_homotopy import with_friction_widths
+from jaxbacklash.fitting.friction_homotopy import sliding_speeds, with_friction_widths
 from jaxbacklash.fitting.setup import base_system, first_guess, make_problem
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import values
@@ -37,3 +39,17 @@ def test_the_smaller_the_width_the_nearer_to_dry_friction():
     assert problem.system.slides == ("joint",)
     # A law that states no width is left as it is.
     assert np.array_equal(with_friction_widths(problem, {"gravity": 0.1}).base, problem.base)
+
+
+def test_friction_that_falls_with_speed_is_softened_over_less_than_its_own_speed():
+    # Over as much as that it would be another law, whose fit makes up for what the softening took.
+    record, rig, *_ = hidden("stribeck", "chirp", 5, 4.0)
+    base, free, _ = base_system(record, "joint", rig.inertia)
+    system = replace(base, effects={"stribeck": catalogue()["stribeck"](1.0, 2.0, 0.1)})
+    problem = make_problem(system, prepare(system, [record], 0.2)[0], [*free, "stribeck.vs"])
+    guess = first_guess(problem)
+    sliding = sliding_speeds(problem)["stribeck"]
+    assert sliding > 0.3
+    width = lambda at: float(values(at.rebuild(guess.theta))["stribeck.width"])  # noqa: E731
+    assert width(softer(problem, {"stribeck": sliding}, 0.02, guess)) == pytest.approx(0.02 * 0.1)
+    assert width(softer(problem, {"stribeck": 0.05}, 0.02, guess)) == pytest.approx(0.02 * 0.05)

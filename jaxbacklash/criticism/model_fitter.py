@@ -65,10 +65,12 @@ class ModelFitter(ModelBuilder):
         effects : by canonical name, at the values to start from
         near : a fitted model from whose joint, windows and ties to start, or looser ones; None starts from the record
         joint : a system with the joint's values to start from instead
-        again : fit it though it was fitted before; the better of both fits is kept
+        again : fit it though it was fitted before; the better of both fits is kept. So is a fit that has not converged, from a
+            model that contains it
         begun : how far states (S,) of laws are from rest at the first sample, by the law's name; at rest those that are not named
         """
-        if not again and (known := self.fitted.get(frozenset(effects))) is not None:
+        known = self.fitted.get(frozenset(effects))
+        if known is not None and not again and (known.converged or near is None or not near.names > known.names):
             return known
         if (was := self.before.get(frozenset(effects))) is not None:
             effects, near, joint = self.effects(was), was, None

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..mechanics import AbstractEffect, Instant
-from ..parameters import specs, values, with_values
+from ..parameters import free_specs, specs, values, with_values
 from ..shooting.information import freedom
 from ..shooting.levenberg import Levenberg, Minimum, minimise
 from ..shooting.multiple_shooting import tie_weights
@@ -292,8 +292,9 @@ def with_friction_width(problem: Problem, speeds: Mapping[str, float], begin: Un
 
 
 def softer(problem: Problem, speeds: Mapping[str, float], share: float, begin: Unknowns) -> Problem:
-    """A problem whose dry friction turns over a ``share`` of the speed at which each law slides, but for those that would be so
-    stiff then, at the parameters to ``begin`` with, that a step of the integration could not follow: these stay sharp."""
+    """A problem whose dry friction turns over a ``share`` of the speed at which each law slides, or over which it changes where
+    that is lower (softened over more it would be another law), but for those that would be so stiff then, at the parameters to
+    ``begin`` with, that a step of the integration could not follow: these stay sharp."""
     step = 0.5 * float(problem.windows.panel)
     system = with_values(
         problem.system, dict(zip(specs(problem.system), map(float, problem.parameters(np.asarray(begin.theta)))))
@@ -301,11 +302,17 @@ def softer(problem: Problem, speeds: Mapping[str, float], share: float, begin: U
     inertia = {port: float(system.inertia) for port in system.rows}
     if system.motor is not None:
         inertia["motor"] = float(system.motor.motor_inertia)
-    widths = {law: share * speed for law, speed in speeds.items()}
+    widths = {law: share * min(speed, *_own_speeds(system.effects[law]), math.inf) for law, speed in speeds.items()}
     deepest = float(np.max(np.abs(problem.windows.measured)))
     levels = {law: _level(system.effects[law], system, deepest) for law in widths}
     stiff = [law for law, width in widths.items() if levels[law] * step > STABLE * inertia[system.effects[law].port] * width]
     return problem if stiff else with_friction_widths(problem, widths)
+
+
+def _own_speeds(law: AbstractEffect) -> list[float]:
+    """Speeds [rad/s] by which a law of friction is described, such as that at which it falls."""
+    found = values(law)
+    return [found[n] for n, s in free_specs(law).items() if s.unit == "rad/s"]
 
 
 def _level(law: AbstractEffect, system: System, deepest: float) -> float:
