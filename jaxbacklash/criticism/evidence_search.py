@@ -55,7 +55,6 @@ class EvidenceSearch:
             while (better := self._best(self.one_law_fewer, -self.demand, model)) is not None:  # no law stays untried
                 model = better
         budget, self.fitter.budget = self.fitter.budget, math.inf  # what is still to be told of the model kept takes a few more
-        model = self.clear(model)
         self._note_ranking()
         model = self.fitter.sharpened(model)
         for name in sorted(model.names):
@@ -69,17 +68,6 @@ class EvidenceSearch:
             return self.run()
         self.level = self.as_likely(model)
         return self.path
-
-    def clear(self, model: FittedModel) -> FittedModel:
-        """The last model of the path, but where it leaves out a torque still: then the last to which an addition has led that
-        took a clear share of what was left. What took little and left much stood in for something else."""
-        while not leaves_noise(model) and len(self.path) > 1:
-            before = self.path[-2].model
-            if before.criterion - model.criterion > CLEAR_SHARE * before.rest or model.names < before.names:
-                break
-            self.path.pop()
-            model = before
-        return model
 
     def _end_early(self) -> None:
         self.fitter.budget = math.inf
@@ -96,15 +84,21 @@ class EvidenceSearch:
         return None
 
     def _best(self, move: Callable[[FittedModel], Iterator[Neighbour]], least: float, model: FittedModel) -> FittedModel | None:
-        """The best model that a kind of move leads to, if it has more evidence than ``least``: then the move is made."""
+        """The best model that a kind of move leads to, if it has more evidence than ``least`` and is clear: the move is made."""
         found: FittedModel | None = None
         for neighbour in move(model):
             fitted = self._fitted(neighbour, model)
             found = fitted if found is None else self.likelier(model, found, fitted)
-        if found is None or not self.evidence(model, found) > least:
+        if found is None or not self.evidence(model, found) > least or not self.is_clear(model, found):
             return None
         self._step(model, found)
         return found
+
+    def is_clear(self, model: FittedModel, found: FittedModel) -> bool:
+        """Whether a model with more laws leaves noise, or takes a clear share of what the one before left: laws that take little
+        and leave much stand in for something else."""
+        larger = len(found.names) > len(model.names)
+        return not larger or leaves_noise(found) or model.criterion - found.criterion > CLEAR_SHARE * model.rest
 
     def _fitted(self, neighbour: Neighbour, model: FittedModel) -> FittedModel:
         near = neighbour.near
