@@ -72,6 +72,10 @@ class ModelFitter(ModelBuilder):
         known = self.fitted.get(frozenset(effects))
         if known is not None and not again and (known.converged or near is None or not near.names > known.names):
             return known
+        if near is not None and not again and not leaves_noise(near) and one_side(near.system):
+            # Beside a model that lacks something, the side that no encoder sees is somewhere else: the record says where.
+            if leaves_noise(model := self.fit_model(effects, again=True)):
+                return model
         if (was := self.before.get(frozenset(effects))) is not None:
             effects, near, joint = self.effects(was), was, None
         begin = joint if joint is not None else self.base if near is None else near.system
@@ -102,11 +106,7 @@ class ModelFitter(ModelBuilder):
         richer = near is not None and near.names < frozenset(effects) and not hard
         first = LOOSEST if near is None else near.tie if richer or was is not None else min(near.tie, LOOSE)
         found = continued(problem, unknowns, first=first, speeds=self.speeds(effects))
-        model = self._keep(self._model(found, frozenset(effects), free))
-        if one_side(problem.system) and near is not None and not leaves_noise(model):
-            # Beside a model that lacks something, the side that no encoder sees is somewhere else: the record says where.
-            return self.fit_model(effects, again=True)
-        return model
+        return self._keep(self._model(found, frozenset(effects), free))
 
     def _other_side(self, problem: Problem, start: Unknowns, free: tuple[str, ...], speeds: dict[str, float]) -> Unknowns:
         """Unknowns of a drive of which motor or link is not seen, brought near to where that one was by a segment of the record,

@@ -160,29 +160,32 @@ def score(
     # An error of a model that is clearly wrong is quoted to three digits: its starts need not creep on for a fourth.
     how = Levenberg(atol=near, rtol=CLEARLY, damping=1e-6, limit=BETWEEN if begin.starts.shape[0] == 2 else LAST)
     still = tied(still, JOINED)
-    solution = minimise(still, begin, how)
-    if float(solution.stats["promise"]) > FURTHER * float(solution.stats["cost"]):
-        solution = minimise(still, minimise(tied(still, LOOSE), begin, how).value, how)
     if one_side(problem.system) and may_explain:
-        solution = _on_the_right_side(still, begin, solution, how)
+        solution = _on_the_right_side(still, begin, how)
+    else:
+        solution = minimise(still, begin, how)
+        if float(solution.stats["promise"]) > FURTHER * float(solution.stats["cost"]):
+            solution = minimise(still, minimise(tied(still, LOOSE), begin, how).value, how)
     found, predicted = solution.value, solution.stats["predicted"]
     scores = tuple(_summarise(still, found, predicted, layout, group, i) for i in range(len(layout.first)))
     return scores, Unknowns(unknowns.theta, found.starts, found.coefficients)
 
 
-def _on_the_right_side(still: Problem, begin: Unknowns, solution: Minimum, how: Levenberg) -> Minimum:
-    """The best of a solution and two with ties that grow step by step, dry friction as it is or ever harder: where one side is
-    not seen, a window may end on the wrong side of an edge, or of a moment at which friction holds."""
+def _on_the_right_side(still: Problem, begin: Unknowns, how: Levenberg) -> Minimum:
+    """Where ties that grow step by step lead, dry friction as it is or ever harder: where one side is not seen, a window may end on
+    the wrong side of an edge, or of a moment at which friction holds. The second way is gone where the first leaves more than
+    noise; the better of both is what comes back."""
     slides = sliding_speeds(still)
+    found: list[Minimum] = []
     for speeds in ({}, slides) if slides else ({},):
-        if 2.0 * float(solution.stats["cost"]) < EXPLAINED * freedom(still, tied=True):
-            break
         at = begin
         for tie in np.geomspace(LOOSE, JOINED, 5):
-            at = minimise(with_friction_width(tied(still, tie), speeds, at), at, how).value
-        other = minimise(still, at, how)
-        solution = min(solution, other, key=lambda m: float(np.nan_to_num(m.stats["cost"], nan=np.inf)))
-    return solution
+            ended = minimise(with_friction_width(tied(still, tie), speeds, at), at, how)
+            at = ended.value
+        found.append(ended)
+        if 2.0 * float(ended.stats["cost"]) < EXPLAINED * freedom(still, tied=True):
+            break
+    return min(found, key=lambda m: float(np.nan_to_num(m.stats["cost"], nan=np.inf)))
 
 
 def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout, group: int, record: int) -> Score:
