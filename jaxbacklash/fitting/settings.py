@@ -115,8 +115,9 @@ PROMISING, CLOSE = 0.25, 0.8
 """Share of the most promising candidate's predicted gain that earns a fit; and of that of one that leaves nothing."""
 SCATTER = 60.0
 """Evidence up to which two models with dry friction are begun once more before they are compared [2 ln L]."""
-MEASURING = 2.0
-"""Minus twice the log prior odds of a fault of the measuring chain against a law of the joint [2 ln L]."""
+MEASURING = 4.0
+"""Minus twice the log prior odds of a fault of the measuring chain against a law of the joint [2 ln L]: more than fits with dry
+friction scatter by where both do the same to a record."""
 SEEN = 10.0
 """What the weak form shows of a torque by chance where nothing is missing, at most: fall of its sum of squares, in units of its
 rows' variance. What shows less is neither tuned nor held against the trajectory."""
