@@ -15,6 +15,7 @@ than one fit:
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -24,7 +25,7 @@ from ..parameters import free_specs, values
 from ..regression.tuning import tune
 from ..system import System
 from .candidates import Candidate, score_test, share_of_rest
-from .evidence import measures_only
+from .evidence import leaves_noise, measures_only
 from .fitted_model import FittedModel
 from .force_test import ForceTest
 from .model_fitter import ModelFitter
@@ -43,14 +44,16 @@ def screen(fitter: ModelFitter, model: FittedModel, barred: Iterable[str] = ()) 
     Returns
     -------
     list of Candidate
-        ``gain`` is the predicted fall of minus twice the log evidence, deflated where the model's residual is no noise.
+        ``gain`` is the predicted fall of minus twice the log evidence, deflated where the model's residual is no noise, and no
+        more than a model that leaves something leaves: a linear promise of a law far from null may be larger.
     """
     absent = [n for n in fitter.laws if n not in model.names and n not in set(barred)]
     if (outright := [n for n in fitter.outright if n in absent]) and not fitter.grips(model.names):
         # A link that floats says nothing of one that is held: friction at the ground is fitted, whatever the others promise.
         return [Candidate(n, fitter.laws[n](), np.inf, 1.0, {}) for n in outright]
     static = score_test(fitter, model, [n for n in absent if n in fitter.static])
-    found = [*static, *_remembering(fitter, model, absent, static)]
+    most = np.inf if leaves_noise(model) else model.rest / model.deflation
+    found = [replace(c, gain=min(c.gain, most)) for c in (*static, *_remembering(fitter, model, absent, static))]
     return sorted(found, key=lambda c: -net_gain(c, fitter))
 
 
