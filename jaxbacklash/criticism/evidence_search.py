@@ -95,10 +95,10 @@ class EvidenceSearch:
         return found
 
     def is_clear(self, model: FittedModel, found: FittedModel) -> bool:
-        """Whether a model with more laws leaves noise, or takes a clear share of what the one before left: laws that take little
-        and leave much stand in for something else."""
-        larger = len(found.names) > len(model.names)
-        return not larger or leaves_noise(found) or model.criterion - found.criterion > CLEAR_SHARE * model.rest
+        """Whether a model with as many laws or more leaves noise, or takes a clear share of what the one before left: laws that
+        take little and leave much stand in for something else."""
+        fewer = len(found.names) < len(model.names)
+        return fewer or leaves_noise(found) or model.criterion - found.criterion > CLEAR_SHARE * model.rest
 
     def _fitted(self, neighbour: Neighbour, model: FittedModel) -> FittedModel:
         near = neighbour.near

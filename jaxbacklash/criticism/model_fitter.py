@@ -72,10 +72,10 @@ class ModelFitter(ModelBuilder):
         known = self.fitted.get(frozenset(effects))
         if known is not None and not again and (known.converged or near is None or not near.names > known.names):
             return known
-        if near is not None and not again and not leaves_noise(near) and one_side(near.system):
-            # Beside a model that lacks something, the side that no encoder sees is somewhere else: the record says where.
-            if leaves_noise(model := self.fit_model(effects, again=True)):
-                return model
+        elsewhere = near is not None and not again and not leaves_noise(near) and one_side(near.system)
+        # Beside a model that lacks something, the side that no encoder sees is somewhere else: the record says where.
+        if elsewhere and leaves_noise(model := self.fit_model(effects, again=True)):
+            return model
         if (was := self.before.get(frozenset(effects))) is not None:
             effects, near, joint = self.effects(was), was, None
         begin = joint if joint is not None else self.base if near is None else near.system
@@ -148,7 +148,8 @@ class ModelFitter(ModelBuilder):
         rows = float(np.sum(weight > 0.0))
         residual = (np.asarray(stats["predicted"].motion) - np.asarray(self.windows.measured)) * weight
         residual = np.where(weight > 0.0, residual, 0.0)
-        inside = float(np.sqrt(np.sum(residual**2) / rows))
+        with np.errstate(over="ignore"):  # of a trajectory that ran away
+            inside = float(np.sqrt(np.sum(residual**2) / rows))
         cost = float(np.nan_to_num(stats["cost"], nan=np.inf))
         whole = found.tie >= TIGHTEST
         count, correlation = freedom(problem, tied=True), correlation_length(_by_channel(residual, problem))

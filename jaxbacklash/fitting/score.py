@@ -172,8 +172,8 @@ def score(
 
 
 def _on_the_right_side(still: Problem, begin: Unknowns, how: Levenberg) -> Minimum:
-    """Where ties that grow step by step lead, dry friction as it is or ever harder: where one side is not seen, a window may end on
-    the wrong side of an edge, or of a moment at which friction holds. The second way is gone where the first leaves more than
+    """Where ties that grow step by step lead, dry friction as it is or ever harder: where one side is not seen, a window may end
+    on the wrong side of an edge, or of a moment at which friction holds. The second way is gone where the first leaves more than
     noise; the better of both is what comes back."""
     slides = sliding_speeds(still)
     found: list[Minimum] = []
