@@ -3,11 +3,12 @@
     python -m benchmarks.drive_recovery [--records 60] [--noise 1 10] [--seconds 20] [--only 3 8] [--tiny] [--out FILE]
 
 Every record has a random rig (motor, gear, joint with play, link), a servo that follows a multisine, torque read with noise and
-encoders that count, on motor and link. A tenth of the records hides nothing, a tenth a torque outside the catalogue, the rest one
-law, two or three at drawn strengths. The simulation is non-smooth and shares nothing with the package
-(`tests.independent.drives`). A set counts as identifiable when every effect in it is more than 6 of the standard errors strong
-that a fit of the true model has, begun at the truth. Two records of each joint: the second is only predicted. Answers are written
-to --out one by one, so that a killed run goes on where it was. It needs numba.
+encoders that count, on motor and link, of every third record on the motor alone. (A current with a known kt is a torque.) A tenth
+of the records hides nothing, a tenth a torque outside the catalogue, the rest one law, two or three at drawn strengths. The
+simulation is non-smooth and shares nothing with the package (`tests.independent.drives`). A set counts as identifiable when every
+effect in it is more than 6 of the standard errors strong that a fit of the true model has, begun at the truth. Two records of
+each joint: the second is only predicted. Answers are written to --out one by one, so that a killed run goes on where it was. It
+needs numba.
 """
 
 from __future__ import annotations
@@ -21,9 +22,11 @@ from typing import Any
 import numpy as np
 
 from benchmarks.effect_recovery import SURE, Case, confusion, hidden_strengths, own_intervals
+from jaxbacklash.criticism.evidence import standard_errors
 from jaxbacklash.criticism.fitted_model import FittedModel
 from jaxbacklash.criticism.model_fitter import ModelFitter
 from jaxbacklash.criticism.refine import refine
+from jaxbacklash.criticism.refinement import Refinement
 from jaxbacklash.fitting.setup import base_system
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import with_values
@@ -38,6 +41,8 @@ LAWS = (
     "coulomb_motor", "gravity", "transmission_error", "coulomb_joint", "cogging", "coulomb_ground", "preload", "torque_ripple",
     "asymmetric_gap", "load_friction",
 )  # fmt: skip
+ENCODERS = ("motor link", "motor link", "motor")
+"""Where encoders are, by turns."""
 FRICTION = ("coulomb_joint", "load_friction")
 """Of these a record hides one at most: friction in the joint."""
 
@@ -87,13 +92,15 @@ def make_case(number: int, noise: float, seconds: float) -> Case:
     rig = random_rig(rng)
     values = {name: drawn(name, rig, rng) for name in hidden}
 
+    encoders = ENCODERS[number % len(ENCODERS)]
+
     def measured(seed: int) -> Record:
         bits = tuple(int(b - np.round(np.log2(noise))) for b in (14, 17))
         seen = servo_record(rig, values, np.random.default_rng(seed), seconds, noise=0.002 * noise, bits=(bits[0], bits[1]))
-        return Record(seen.pop("t"), seen, ratio=rig.ratio)
+        return Record(seen["t"], {name: seen[name] for name in ("torque", *encoders.split())}, ratio=rig.ratio)
 
     record, heldout = measured(8000 + number), measured(9000 + number)
-    return Case(number, hidden, rig, values, record, "servo", heldout)  # type: ignore[arg-type]
+    return Case(number, hidden, rig, values, record, encoders, heldout)  # type: ignore[arg-type]
 
 
 def true_model(case: Case) -> FittedModel:
@@ -102,6 +109,14 @@ def true_model(case: Case) -> FittedModel:
     fitter = ModelFitter(case.record, with_values(base, {n: getattr(case.rig, n) for n in NAMES}), free, None)
     laws = catalogue()
     return fitter.fit_model({n: laws[n](**v) for n, v in case.values.items()})
+
+
+def over_bound(case: Case, found: Refinement, true: FittedModel) -> dict[str, float]:
+    """Errors of the parameters told, over the standard errors that the true model has, begun at the truth: the Cramer-Rao bound
+    of a record whose torque and angles are read with noise."""
+    bound = dict(zip(true.free, standard_errors(true)))
+    told = {n: found.fit.parameters[n].value for n in NAMES}
+    return {n: (value - getattr(case.rig, n)) / bound[n] for n, value in told.items() if value is not None}
 
 
 def judged(case: Case) -> dict[str, Any]:
@@ -113,9 +128,11 @@ def judged(case: Case) -> dict[str, Any]:
     inside = {n: bool(ci is not None and ci[0] <= getattr(case.rig, n) <= ci[1]) for n, ci in intervals.items()}
     unknown = bool(set(case.hidden) & set(OUTSIDE))
     exact = set(found.effects) == set(case.hidden)
-    sure = not case.hidden or unknown or all(strength > SURE for strength in hidden_strengths(case, true_model(case)).values())
+    true = None if unknown else true_model(case)
+    sure = true is None or all(strength > SURE for strength in hidden_strengths(case, true).values())
     return {
-        "number": case.number, "hidden": list(case.hidden), "found": list(found.effects), "verdict": found.verdict.word,
+        "number": case.number, "encoders": case.kind, "hidden": list(case.hidden), "found": list(found.effects),
+        "verdict": found.verdict.word, "bounds": {} if true is None else over_bound(case, found, true),
         "alternatives": [list(a) for a in found.alternatives], "right": not found.verdict.complete if unknown else exact,
         "rms": [s.fit.score.rms for s in found.stages], "held": found.fit.heldout and found.fit.heldout.median,
         "inside": inside, "own": own_intervals(case, found), "seconds": wall, "processor": processor, "identifiable": sure,
@@ -129,10 +146,14 @@ def table(rows: list[dict[str, Any]]) -> str:
     unknown, clean = [r for r in rows if set(r["hidden"]) & set(OUTSIDE)], [r for r in rows if not r["hidden"]]
     named = [r for r in rows if r["hidden"] and r not in unknown]
     known = [*named, *clean]
+    right = [r for r in known if r["right"]]
+    rms = lambda some: float(np.sqrt(np.mean(np.square(some)))) if some else float("nan")  # noqa: E731
     lines = [
         f"exact sets {share(named)}; of the identifiable {share([r for r in named if r['identifiable']])}; clean {share(clean)}; "
         f"unknown admitted {share(unknown)}",
         *(f"95 % intervals of {n} that hold the truth: {sum(r['inside'][n] for r in known)} of {len(known)}" for n in NAMES),
+        *(f"error of {n} over its bound, of the exact sets, rms: {rms([r['bounds'][n] for r in right if n in r['bounds']]):.2f}"
+          for n in NAMES),
         f"of the parameters of laws, of the exact sets: {sum(v for r in rows if r['right'] for v in r['own'].values())} of "
         f"{sum(len(r['own']) for r in rows if r['right'])}",
         f"seconds, median {np.median([r['seconds'] for r in rows]):.1f}, longest {max(r['seconds'] for r in rows):.1f}; of the "
@@ -140,7 +161,8 @@ def table(rows: list[dict[str, Any]]) -> str:
     ]
     for r in (r for r in rows if not r["right"]):
         names = "+".join(r["hidden"]) or "nothing", "+".join(r["found"]) or "nothing"
-        lines.append(f"  {r['number']:3d} {names[0]} -> {names[1]} ({r['verdict']}; alternatives {r['alternatives']})")
+        seen = f"encoders on {r['encoders']}; {r['verdict']}; alternatives {r['alternatives']}; identifiable {r['identifiable']}"
+        lines.append(f"  {r['number']:3d} {names[0]} -> {names[1]} ({seen})")
     return "\n".join([*lines, *confusion(known)])
 
 
