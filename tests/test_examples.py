@@ -20,7 +20,7 @@ import jaxbacklash as jb
 HOW = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 LONG = {
     "cross_check", "refine", "missing_torque", "explain_torque", "where_it_fails", "rank_effects", "find_causes", "plot.ranking",
-    "refine_each", "plot.force_loop", "plot.where_it_fails", "plot.missing_torque", "plot.torque_over",
+    "refine_each", "plot.force_loop", "plot.where_it_fails", "plot.missing_torque", "plot.torque_over", "plot.pattern_region",
 }  # fmt: skip
 """Examples that take more than a few seconds, most of them to compile."""
 ELSEWHERE = {"read_record", "read_series", "write_record", "start"}

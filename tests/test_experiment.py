@@ -46,6 +46,7 @@ def test_what_it_promises_is_what_the_joint_shows():
     assert errors[1] == pytest.approx(best.misfit, rel=0.2)
 
 
+@pytest.mark.slow
 def test_what_nothing_separates_is_said():
     own = fitter_of({"asymmetric_gap": {"z0": 0.001}}, make_excitation(np.random.default_rng(2), "multisine", 8.0), 8.0)
     found = separate(own, fitted(own, "asymmetric_gap", z0=0.001), fitted(own, "sensor_offset", z_s=0.001))

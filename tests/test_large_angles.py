@@ -13,6 +13,7 @@ TIMES = 40.0
 """A joint without weight and friction moves so many times as far where its play and its base are so many times as large."""
 
 
+@pytest.mark.slow
 def test_a_confirmed_record_is_refined_to_its_end():
     record, rig, _, _ = hidden(None, "chirp", 5)
     wide = {name: TIMES * values for name, values in record.channels.items()}

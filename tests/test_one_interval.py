@@ -29,6 +29,7 @@ def test_fit_and_refine_give_one_interval():
     assert np.allclose(fitted.covariance, fitted.covariance.T)
 
 
+@pytest.mark.slow
 def test_fit_and_refine_give_one_standard_error_of_a_model_that_lacks_something_and_no_interval():
     record, _ = jb.demo_records()
     fitted, refined = jb.fit(record, inertia=3.16, starts=1), refined_base(record, 3.16)
