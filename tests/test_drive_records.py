@@ -120,3 +120,17 @@ def test_look_tells_a_drive_and_its_gear(written, tmp_path):
     assert told.code == 0
     assert "it seems to be a drive: torque at its motor" in told.out
     assert re.search(r"next: jaxbacklash fit \S+ --ratio 5\d", told.out), told.out
+
+
+@pytest.mark.parametrize(
+    ("without", "words"),
+    [
+        ((), "torque and both encoders: it tells inertia and friction of the motor"),
+        (("link",), "does not tell friction of the motor from that of the joint"),
+        (("motor",), "ten to a hundred times less sharply"),
+        (("torque",), "nothing of the motor"),
+    ],
+)
+def test_what_columns_tell_is_said_before_a_fit(written, without, words):
+    with pytest.warns(UserWarning, match=words):
+        jb.read_record(written(**dict.fromkeys(without)), ratio=RATIO)

@@ -35,6 +35,7 @@ from .record import Record
 from .resample import no_long_gap, resampled
 from .rows_used import RowsUsed
 from .table import Table
+from .tells import tells
 from .undriven import undriven
 
 
@@ -158,6 +159,8 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
         t, channels, where, extras, _confirmed(picked, options), tuple(findings), **(gear if "torque" in channels else {})
     )
     undriven(record, table, picked, options)
+    for sentence in tells(channels, geared=options.ratio is not None):
+        warnings.warn(f"{where}: {sentence}", UserWarning, stacklevel=3)
     return record
 
 
