@@ -107,7 +107,7 @@ def test_the_filter_finds_the_side_that_is_not_seen(which):
 def test_the_demo_of_a_drive_finds_its_play(tmp_path):
     told = call(["demo", "--drive", "--out", "found", "--json"], tmp_path)
     assert told.code == 0, told.err
-    play = json.loads(told.out)["parameters"]["backlash"]
+    play = json.loads(told.out)["stages"][-1]["parameters"]["backlash"]
     assert play["ci95"][0] < 0.012 < play["ci95"][1]
     assert play["stderr"] < 1e-5
     assert (tmp_path / "found" / "report.html").exists()
