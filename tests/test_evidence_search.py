@@ -35,6 +35,15 @@ def test_a_hidden_weight_is_named_at_its_size():
     assert model.tied
     assert model.value["gravity.G"] == pytest.approx(effects["gravity"]["G"], rel=0.02)
     assert search.path[0].evidence["gravity"] > search.demand
+    alone = search.fitter.fitted[frozenset()]
+    assert max(c.gain for c in search.screened(alone)) <= alone.rest / alone.deflation
+    # What takes little and leaves much stands in for something else, whether it comes beside a law or in the place of one.
+    for names in (frozenset({"preload"}), frozenset()):
+        for share, clear in ((0.05, False), (0.2, True)):
+            better = replace(alone, names=names, log_evidence=alone.log_evidence + 0.5 * share * alone.rest)
+            assert search.is_clear(alone, better) == clear
+    assert search.is_clear(alone, model)
+    assert search.is_clear(model, alone)  # fewer laws need bring nothing
 
 
 @pytest.mark.slow
