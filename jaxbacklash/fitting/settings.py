@@ -107,7 +107,7 @@ MOST_LAWS = 4
 """Laws in a model at most: more small ones stand for one that the catalogue does not have."""
 MOST_FITTED = 3
 """Candidates beside one model that are fitted at most."""
-MOST_STEPS = 1000
+MOST_STEPS = 600
 """Steps of a search over all its fits: then it ends with the best it has. Counted and not timed, so that every run ends alike."""
 CLEAR_SHARE = 0.1
 """Share of what a model leaves that a law must take away if more is left."""
