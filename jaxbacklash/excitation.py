@@ -170,7 +170,7 @@ class Panelled(Sampled):
 
 
 class MotorTorque(AbstractExcitation):
-    """A signal as the torque at the motor of a drive [N m], without a hold.
+    """A signal as the torque at the motor of a drive [N m], or the position command of its servo [rad], without a hold.
 
     Examples
     --------
@@ -188,7 +188,8 @@ class MotorTorque(AbstractExcitation):
 
 
 class HeldTorque(AbstractExcitation):
-    """Samples of the torque at the motor of a drive, each held until the next: what a controller puts out.
+    """Samples of the torque at the motor of a drive, each held until the next: what a controller puts out. Of a motor with a servo
+    these are of its position command [rad].
 
     Attributes: ``t0`` time of the first sample and ``dt`` spacing [s]; ``torque`` (N,) [N m]. Before the first and after the last
     sample those go on.

@@ -27,7 +27,7 @@ class Drive(eqx.Module):
 
     ``dforce`` is the rate of the force where it is known; without it the force is a straight line between panel edges.
     ``torque`` at the motor of a drive [N m] and its rate ``dtorque``; without a rate the torque is held from one panel edge to
-    the next, as a controller holds it.
+    the next, as a controller holds it. Of a motor with a servo ``torque`` is what that is told, the position command [rad].
     """
 
     x: Scalar = 0.0

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .effects import Contact, Damper, Motor, Spring
+from .effects import Contact, Damper, LimitedServo, Motor, Servo, Spring
 from .errors import BadInput
 from .mechanics import AbstractEffect, canonical_name, catalogue
 from .parameters import specs, unit_text
@@ -193,8 +193,9 @@ def _build(data: dict[str, Any], where: str) -> System:
     _noise(data, where)
     values = dict(model)
     observed = values.pop("observed", "z")
-    of_motor = {f.name for f in fields(Motor)}
-    drive = bool(of_motor & set(values))
+    drive = bool({f.name for f in fields(LimitedServo)} & set(values))
+    kind = LimitedServo if "tmax" in values else Servo if {"Kp", "Kd"} & set(values) else Motor
+    of_motor = {f.name for f in fields(kind)}
     known = OF_A_DRIVE if drive else OBSERVED
     if observed not in known:
         raise BadInput(f"{where}: [model] observed is {observed!r}, wanted one of {', '.join(known)}")
@@ -207,7 +208,7 @@ def _build(data: dict[str, Any], where: str) -> System:
     if "backlash" in values and "stiffness" not in values:
         raise BadInput(f"{where}: [model] has a backlash but no stiffness, wanted both, or neither for a free axis")
     numbers = {name: _value(value, f"{where}: [model] {name}") for name, value in values.items()}
-    for name in ("inertia", "stiffness", "motor_inertia", "ratio"):
+    for name in ("inertia", "stiffness", "motor_inertia", "ratio", "Kp", "tmax"):
         if name in numbers and numbers[name] <= 0.0:
             raise BadInput(f"{where}: [model] {name} is {numbers[name]:g}, wanted a positive number")
     contact: Contact | Spring | None = None
@@ -216,6 +217,7 @@ def _build(data: dict[str, Any], where: str) -> System:
         ("damping", "a damping"),
         ("width", "a length"),
         ("motor_damping", "a damping"),
+        ("Kd", "a gain"),
     ):
         if numbers.get(name, 0.0) < 0.0:
             raise BadInput(f"{where}: [model] {name} is {numbers[name]:g}, wanted {what}, zero or more")
@@ -223,7 +225,7 @@ def _build(data: dict[str, Any], where: str) -> System:
         contact = Contact(numbers["backlash"], numbers["stiffness"], numbers.get("width", 0.0))
     elif "stiffness" in numbers:
         contact = Spring(numbers["stiffness"])
-    motor = Motor(**{name: numbers[name] for name in of_motor}) if drive else None
+    motor = kind(**{name: numbers[name] for name in of_motor}) if drive else None
     system = System(numbers.get("inertia", 1.0), contact, Damper(numbers.get("damping", 0.0)), observed=observed, motor=motor)
     tables = data.get("effects", {})
     if not isinstance(tables, dict):

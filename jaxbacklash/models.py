@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from .effects import Contact, Damper, GapSpring, Gravity, LinearGravity, Motor, Spring
+from .effects import Contact, Damper, GapSpring, Gravity, LimitedServo, LinearGravity, Motor, Servo, Spring
 from .excitation import Harmonic
 from .system import System
 
@@ -42,7 +42,7 @@ def two_link(
 
 def drive(
     motor_inertia: float, motor_damping: float, ratio: float, inertia: float, backlash: float, stiffness: float, damping: float,
-    *, observed: str = "motor link", width: float = 0.0,
+    *, observed: str = "motor link", width: float = 0.0, Kp: float | None = None, Kd: float = 0.0, tmax: float | None = None,
 ) -> System:  # fmt: skip
     r"""A motor that turns a link through a gear and a joint with play: both move, the torque at the motor drives.
 
@@ -51,7 +51,9 @@ def drive(
         \qquad z = y - \theta / N
 
     motor_inertia [kg m^2] and motor_damping [N m s/rad] at the motor's shaft; ratio N, turns of the motor for a turn of the link;
-    the others as `base_motion_joint` has them, at the link. observed: which of motor and link have an encoder.
+    the others as `base_motion_joint` has them, at the link. observed: which of motor and link have an encoder. With a gain Kp
+    [N m/rad] the motor has a `Servo`, which makes its torque of a position command, with Kd [N m s/rad] and, where it is limited,
+    at most tmax [N m]; what drives (`HeldTorque`, `MotorTorque`) is then that command [rad].
 
     Examples
     --------
@@ -63,6 +65,9 @@ def drive(
     (501, 2)
     """
     motor = Motor(motor_inertia, motor_damping, ratio)
+    if Kp is not None:
+        own = (motor_inertia, motor_damping, ratio, Kp, Kd)
+        motor = Servo(*own) if tmax is None else LimitedServo(*own, tmax)
     return System(inertia, Contact(backlash, stiffness, width), Damper(damping), observed=observed, motor=motor)
 
 

@@ -15,6 +15,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
+from .effects import Servo
 from .excitation import AbstractExcitation, Rest, Sampled
 from .frames import dataframe
 from .mechanics import Drive
@@ -169,11 +170,8 @@ def simulate(
 
 
 def default_panels(system: System, rate: float) -> int:
-    """Panels between samples: none longer than 1 ms, at least 20 in a period of the contact resonance."""
-    longest = 1e-3
-    if system.contact is not None:
-        omega = float(np.sqrt(np.maximum(system.contact.stiffness, 1e-12) / system.reduced_inertia))
-        longest = min(longest, 2.0 * np.pi / omega / 20.0)
+    """Panels between samples: none longer than 1 ms, at least 20 in a period of the contact resonance, or of a servo."""
+    longest = min(1e-3, 2.0 * np.pi / max(float(system.pace), 1e-9) / 20.0)
     return max(1, int(np.ceil(1.0 / rate / longest - 1e-9)))
 
 
@@ -280,7 +278,8 @@ def as_record(trajectory: Trajectory, system: System, *, path: str = "") -> Reco
     if system.motor is not None:
         push = np.zeros(1) if trajectory.drive.torque is None else np.asarray(trajectory.drive.torque)
         seen = {name: np.asarray(trajectory.observed)[:, i] for i, name in enumerate(system.channels)}
-        channels = {"torque": np.broadcast_to(push, trajectory.t.shape).copy(), **seen}
+        told_by = "command" if isinstance(system.motor, Servo) else "torque"
+        channels = {told_by: np.broadcast_to(push, trajectory.t.shape).copy(), **seen}
         told = frozenset({"t", *channels})
         return Record(np.asarray(trajectory.t), channels, path, confirmed=told, ratio=float(system.motor.ratio))
     channels = {}

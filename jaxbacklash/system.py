@@ -84,6 +84,12 @@ class System(eqx.Module):
         """Inertia that swings on the contact [kg m^2]: that of the link, against the motor's seen through the gear in a drive."""
         return self.inertia if self.motor is None else 1.0 / sum(a * a * w for a, w in zip(self.rows["joint"], self.mobility))
 
+    @property
+    def pace(self) -> Scalar:
+        """How fast it reacts [rad/s]: swinging on its contact, or as the servo of its motor does. Steps have to resolve this."""
+        swing = 0.0 if self.contact is None else jnp.sqrt(jnp.maximum(self.contact.stiffness, 1e-12) / self.reduced_inertia)
+        return swing if self.motor is None else jnp.maximum(swing, self.motor.pace)
+
     def on_its_base(self) -> System:
         """The joint of a drive with its motor as the base that moves as prescribed, laws of the motor left out; else as it is."""
         if self.motor is None:
@@ -167,7 +173,8 @@ class System(eqx.Module):
         if self.motor is None:
             return (state[1], link, *hidden)
         # What the joint gives to the link it takes from the motor, through the gear.
-        push = (0.0 if drive.torque is None else drive.torque) + self._on_motor(now, state) - joint / self.motor.ratio
+        made = self.motor.pushed(0.0 if drive.torque is None else drive.torque, now.th, now.dth)
+        push = made + self._on_motor(now, state) - joint / self.motor.ratio
         return (state[1], link, state[3], push / self.motor.motor_inertia, *hidden)
 
     def _on_motor(self, now: Instant, state: State) -> Scalar:

@@ -164,7 +164,7 @@ def test_a_link_alone_is_asked_about_where_it_is_driven_and_only_there():
 
 
 def test_every_row_of_the_table_is_tried_here():
-    of_drives = {"no-ratio", "wrong-ratio", "turned-link"}  # in test_drive_records
+    of_drives = {"no-ratio", "wrong-ratio", "turned-link", "command"}  # in test_drive_records
     assert {case[0] for case in CASES} | BY_NAME_ALONE | of_drives == RULES.keys()
 
 

@@ -28,7 +28,9 @@ from .loads import Preload as Preload
 from .loads import TorqueRipple as TorqueRipple
 from .motor import Cogging as Cogging
 from .motor import CoulombMotor as CoulombMotor
+from .motor import LimitedServo as LimitedServo
 from .motor import Motor as Motor
+from .motor import Servo as Servo
 from .relaxation import Relaxation as Relaxation
 from .stiffness import AsymmetricGap as AsymmetricGap
 from .stiffness import AsymmetricStiffness as AsymmetricStiffness

@@ -3,7 +3,8 @@ r"""The motor of a drive, and the laws that act at its port.
 .. math:: J_m \ddot\theta = \tau - c_m \dot\theta + T / N + \sum_k \tau_k(\theta, \dot\theta)
 
 :math:`\theta` turns N times for a turn of the link, :math:`\tau` is the torque of its windings, T what the joint takes from it
-(`jaxbacklash.system`). The laws here feel the motor's own angle and speed, before the gear.
+(`jaxbacklash.system`). The laws here feel the motor's own angle and speed, before the gear. Where the torque was not measured a
+`Servo` makes it, of the position that it was told.
 """
 
 from __future__ import annotations
@@ -25,6 +26,45 @@ class Motor(eqx.Module):
     motor_inertia: Scalar = param(unit="kg m^2", lower=0.0, required=True, label="inertia of the motor")
     motor_damping: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, required=True, label="viscous friction of the motor")
     ratio: Scalar = param(unit="1", default=1.0, fixed=True, label="turns of the motor for a turn of the link")
+
+    @property
+    def pace(self) -> Scalar:
+        """How fast what makes its torque reacts [rad/s], which steps have to resolve."""
+        return 0.0
+
+    def pushed(self, given: Scalar, th: Scalar, dth: Scalar) -> Scalar:
+        """Torque at the motor [N m] at angle ``th`` and speed ``dth`` [rad, rad/s], of what it is ``given``: that torque."""
+        return given
+
+
+class Servo(Motor):
+    r"""A motor that follows a position command u of the link: :math:`\tau = K_p (u - \theta / N) - K_d \dot\theta`.
+
+    The motor's viscous friction acts as :math:`K_d` does, which stands for both. Without a torque, all inertias, gains and
+    torques can be multiplied by one number without changing the motion.
+    """
+
+    motor_damping: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, fixed=True, label="viscous friction of the motor")
+    Kp: Scalar = param(unit="N m/rad", lower=0.0, label="gain of the servo on the error of the link's position")
+    Kd: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, label="gain on the motor's speed, its viscous friction in it")
+
+    @property
+    def pace(self) -> Scalar:
+        return jnp.maximum(jnp.sqrt(self.Kp / (self.ratio * self.motor_inertia)), self.Kd / self.motor_inertia)
+
+    def pushed(self, given: Scalar, th: Scalar, dth: Scalar) -> Scalar:
+        return self.Kp * (given - th / self.ratio) - self.Kd * dth
+
+
+class LimitedServo(Servo):
+    r"""A servo whose torque stays within :math:`\pm t_\mathrm{max}`: while it does not, the motor's own friction is told apart."""
+
+    motor_damping: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, label="viscous friction of the motor")
+    Kd: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, label="gain of the servo on the motor's speed")
+    tmax: Scalar = param(unit="N m", lower=0.0, label="largest torque of the servo")
+
+    def pushed(self, given: Scalar, th: Scalar, dth: Scalar) -> Scalar:
+        return jnp.clip(super().pushed(given, th, dth), -self.tmax, self.tmax)
 
 
 class CoulombMotor(AbstractEffect):

@@ -62,7 +62,7 @@ def fit(
     ----------
     records : records of one kind and rate; parameters are shared
     model : ``"joint"``, ``"linear"`` or ``"free"``; ignored when ``system`` is given
-    inertia : J [kg m^2]; None: fitted to force-driven records, else values are per unit inertia
+    inertia : J [kg m^2]; None: fitted to force-driven records, else values are per unit inertia, of a servo's command the motor's
     effects : effects added to the base model, as they are or by canonical name
     system : a system to start from instead of an estimate from the data
     free : names of the free parameters; default all but the inertia and numerical settings
@@ -155,7 +155,8 @@ def fit(
     excess = inflation(found.misfit, scored[0], tied=found.tied, one_run=sticks_and_slips(system))
     covariance = excess * found.covariance
     stderr = dict(zip(names, np.sqrt(np.diag(covariance))))
-    per_inertia = inertia is None and chosen[0].kind not in ABSOLUTE
+    unscaled = chosen[0].input_name == "command" and float(fitted.motor.motor_inertia) == 1.0  # type: ignore[union-attr]
+    per_inertia = inertia is None and (chosen[0].kind not in ABSOLUTE or unscaled)
     estimates = judge(
         fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational, covariance=covariance,
         explained=explains(scored, fitted) and joined(found.tied, fitted),
@@ -226,18 +227,18 @@ def prepare(
     dt = records[0].dt
     window = score_window(dt, window)
     # Without the noise of a base motion a record says ten times more: its panels have to be finer.
-    finer = 1.0 if records[0].kind in ("base_motion", "drive") else 2.0
+    noisy = records[0].input_name == "torque" or records[0].kind == "base_motion"
+    finer = 1.0 if noisy else 2.0
     longest = longest_panel(dt) / finer
     if system.contact is not None:
         # Thirty-two panels a period of the contact resonance keep the integration error a thousandth of an encoder's noise.
-        omega = np.sqrt(float(system.contact.stiffness) / float(system.reduced_inertia))
-        period = 2.0 * np.pi / max(float(omega), 1e-9)
+        period = 2.0 * np.pi / max(float(system.pace), 1e-9)
         # A first guess of the play may be far too small, so that there is an end to what it may ask for.
         play = float(getattr(system.contact, "backlash", 0.0))  # a plain spring has none
         crossing = min(crossing_time(r, play, period / 16.0) for r in records)
         longest = min(longest, max(min(period / (32.0 * finer), max(crossing, period / 256.0)), dt / PANELS))
     # Each sample of a held torque is an unknown of its window: the shorter windows are, the less work.
-    length = HELD_WINDOW * dt if records[0].kind == "drive" else shooting_window(window)
+    length = HELD_WINDOW * dt if records[0].input_name == "torque" else shooting_window(window)
     windows, layout = cut(records, length, longest_panel=longest, least=intervals)
     if system.observed == "T" and system.contact is not None:
         # Ties are of motion: the noise of a force counts as the motion that would make it in contact.

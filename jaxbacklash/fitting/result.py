@@ -153,7 +153,7 @@ def text(fit: Fit, causes: Sequence[Named] = ()) -> str:
     effects = ", ".join(sorted(fit.system.effects)) or "none"
     lines.append(f"model: {fit.model}; effects added: {effects}")
     if fit.per_inertia:
-        lines.append("no inertia was given: stiffness, damping and torques are per unit inertia")
+        lines.append(without_inertia(fit))
     if fit.records[0].per_kt:
         lines.append(WITHOUT_KT)
     note = doubt(fit)
@@ -166,6 +166,12 @@ def text(fit: Fit, causes: Sequence[Named] = ()) -> str:
         lines.append(f"begun where the search stood, {fit.steps} steps from there; the windows {how}")
     lines.append(verdict_text(fit, causes))
     return "\n".join(lines)
+
+
+def without_inertia(fit: Fit) -> str:
+    """What is said where nothing in the record tells the size of torques."""
+    whose = "" if fit.system.motor is None else " of the motor, whose torque was not measured"
+    return f"no inertia was given: stiffness, damping and torques are per unit inertia{whose}"
 
 
 def at_most(fit: Fit, channel: str, record: int = 0) -> str:

@@ -12,7 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from ..compiled import kept_jit
-from ..effects import Contact, Damper, Motor, Spring
+from ..effects import Contact, Damper, Servo, Spring
 from ..errors import BadInput
 from ..mechanics import AbstractEffect, Drive, canonical_name, catalogue, motion_of
 from ..one_encoder.carried import filtered, one_side
@@ -82,14 +82,16 @@ def drive_system(
     """
     if model != "joint":
         raise BadInput(f"--model {model}: a drive (torque with motor or link) is fitted as a joint with play; leave --model out")
-    (motor_inertia, friction), start = start_of_drive(record)
+    motor, start = start_of_drive(record, inertia)
     if inertia is not None:
         start = replace(start, inertia=inertia)
-    motor = Motor(motor_inertia, friction, record.ratio)
     joint = System(start.inertia, Contact(start.backlash, start.stiffness), Damper(start.damping), motor=motor,
                    observed=" ".join(record.observed_names))  # fmt: skip
     system = add_effects(joint, effects)
-    return system, (() if inertia is not None else ("inertia",)) + free_names(system), start
+    free = free_names(system)
+    if isinstance(motor, Servo):  # no torque was measured: one of the two inertias is the scale
+        return system, free if inertia is None else ("motor_inertia", *(n for n in free if n != "inertia")), start
+    return system, (() if inertia is not None else ("inertia",)) + free, start
 
 
 def stick_slip_system(
@@ -154,12 +156,13 @@ def _system(start: Start, record: Record, model: str) -> System:
 
 
 def free_names(system: System, beside: Iterable[str] | None = None) -> tuple[str, ...]:
-    """All parameters that a fit may change: everything but the inertia, numerical settings, shapes at their usual values, and
+    """All parameters that a fit may change: everything but the inertia (a servo's motor's), numerical settings, shapes at their usual values, and
     what an effect yields to those of ``beside`` (default: all that the system has)."""
     present = set(system.effects if beside is None else beside)
     effects = system.effects.items()
     held = {f"{name}.{own}" for name, effect in effects for own, other in effect.yields.items() if other in present}
-    return tuple(n for n in free_specs(system) if n != "inertia" and n not in held)
+    held |= {"motor_inertia" if isinstance(system.motor, Servo) else "inertia"}
+    return tuple(n for n in free_specs(system) if n not in held)
 
 
 def add_effects(system: System, effects: Sequence[AbstractEffect | str]) -> System:

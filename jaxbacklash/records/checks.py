@@ -14,10 +14,12 @@ from .findings.quantities import degrees
 
 CHANNELS = ("x", "z", "y", "F", "T")
 """Base motion, relative motion, absolute motion, force on the link, transmitted force (the last two may be torques)."""
-DRIVE = ("torque", "motor", "link")
-"""Torque at the motor of a drive, and what its encoders show: the motor's shaft, and the link behind the gear."""
-OF_A_DRIVE = ("torque", "current", "motor", "link")
-"""What a file may have of these: a current in place of the torque."""
+DRIVE = ("torque", "command", "motor", "link")
+"""Torque at the motor of a drive, or the position command of its servo, and what its encoders show: the motor's shaft, and the link behind the gear."""
+PUSHES = ("torque", "current", "command")
+"""What may drive the motor; of several in a file the first is taken, unless another is mapped."""
+OF_A_DRIVE = (*PUSHES, "motor", "link")
+"""What a file may have of a drive: a current in place of the torque."""
 
 MIN_SAMPLES = 64
 MIN_SECONDS = 0.5
@@ -28,7 +30,7 @@ LARGEST = 1e12
 them, which a fit needs, stay far within double precision."""
 WANTED_CHANNELS = (
     "x with z or y (base motion), F with y or z (force), x with T (transmitted force), "
-    "torque or current with motor or link (drive), or z or y alone (free decay)"
+    "torque or current with motor or link (drive), command with motor (its servo), or z or y alone (free decay)"
 )
 
 
@@ -135,6 +137,8 @@ def kind_of(names, extras, where: str) -> str:
         When no experiment has these channels.
     """
     if "torque" in names and ("motor" in names or "link" in names):
+        return "drive"
+    if "command" in names and "motor" in names:
         return "drive"
     moves = "z" in names or "y" in names
     if moves:

@@ -14,7 +14,7 @@ import numpy as np
 
 from jaxbacklash.errors import BadInput
 
-from .checks import CHANNELS, OF_A_DRIVE, WANTED_CHANNELS, listed, wrong
+from .checks import CHANNELS, OF_A_DRIVE, PUSHES, WANTED_CHANNELS, listed, wrong
 from .header_units import split_unit
 from .roles import columns_option, guess_roles, spec_of
 from .table import Column, Table
@@ -84,9 +84,10 @@ def _of_a_drive(table: Table, numbers: Mapping[str, int], where: str) -> dict[st
         found = own_number(table, channel, {**numbers, **drives})
         if channel not in drives and found is not None:
             drives[channel] = found
-    if {"torque", "current"} <= set(drives):
-        del drives["current" if "torque" in numbers or "current" not in numbers else "torque"]  # what was mapped, else the torque
-    pushed = {"torque", "current"} & set(drives)
+    pushed = sorted(set(PUSHES) & set(drives), key=lambda one: (one not in numbers, PUSHES.index(one)))[:1]  # mapped ones first
+    drives = {channel: number for channel, number in drives.items() if channel not in PUSHES or channel in pushed}
+    if pushed == ["command"] and "link" in drives and "motor" not in drives:
+        raise wrong(where, "command and link", "command with motor, whose error the servo acts on, and link beside it or not")
     if not pushed and {"motor", "link"} <= set(drives):
         drives = {"x": drives["motor"], "y": drives["link"]}
     elif not (pushed and {"motor", "link"} & set(drives)):

@@ -36,6 +36,7 @@ KINDS = {
     "base_motion": "a record of base motion", "force": "a force-driven record", "free_decay": "a free decay",
     "transmitted": "base motion with the transmitted force", "series": "a series of one channel",
     "loop": "a slow loop of torque over angle", "drive": "a drive: torque at its motor, and what its encoders show",
+    "servo": "a drive with a servo: the position that it was told, and what its encoders show",
 }  # fmt: skip
 
 
@@ -79,7 +80,8 @@ class Description:
     @property
     def seems(self) -> str:
         """What the file seems to be, in words."""
-        return KINDS.get(self.kind or "", "no record that can be fitted as it stands")
+        servo = self.record is not None and self.record.input_name == "command"
+        return KINDS.get("servo" if servo else self.kind or "", "no record that can be fitted as it stands")
 
     @property
     def ready(self) -> bool:

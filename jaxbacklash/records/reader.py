@@ -19,7 +19,7 @@ from jaxbacklash.errors import BadInput
 
 from . import checks, time_axis
 from .bridge import bridged
-from .checks import number, wrong
+from .checks import PUSHES, number, wrong
 from .clocks import on_one_clock, times_of
 from .columns import Picked, pick
 from .conversion import in_si
@@ -156,7 +156,7 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
         t, channels, extras = _even(t, channels, extras, options, where)
     gear: dict[str, Any] = {"ratio": options.ratio or 1.0, "per_kt": "current" in picked.channels and options.kt is None}
     record = Record(
-        t, channels, where, extras, _confirmed(picked, options), tuple(findings), **(gear if "torque" in channels else {})
+        t, channels, where, extras, _confirmed(picked, options), tuple(findings), **(gear if {"torque", "command"} & set(channels) else {})
     )
     undriven(record, table, picked, options)
     for sentence in tells(channels, geared=options.ratio is not None):
@@ -181,7 +181,7 @@ def _named(picked: Picked, options: ReadOptions, where: str) -> None:
         absent = sorted(named - set(picked.channels))
         if absent:
             raise wrong(where, f"no channel {absent[0]}, which {option} names", f"one of {checks.listed(picked.channels)}")
-    if options.ratio is not None and not {"x", "motor", "torque", "current"} & set(picked.channels):
+    if options.ratio is not None and not {"x", "motor", *PUSHES} & set(picked.channels):
         raise wrong(where, "no channel x, of which --ratio gives the turns", f"one beside {checks.listed(picked.channels)}")
     if options.kt is not None and "current" not in picked.channels:
         raise wrong(where, "no current, for which --kt gives the torque", f"one beside {checks.listed(picked.channels)}")

@@ -19,7 +19,8 @@ class Record:
         (see `time_axis.uniform_grid`).
     channels : dict of arrays of shape (N,)
         By name: x base motion, z = y - x relative motion, y absolute motion (rad or m), F force or torque on the link,
-        T force or torque the joint transmits (N or N m); of a drive torque at the motor (N m), motor and link its encoders (rad).
+        T force or torque the joint transmits (N or N m); of a drive torque at the motor (N m), or command, the position of the
+        link that its servo is told (rad), motor and link its encoders (rad).
         With z and y both given, z is the one observed and y goes to
         the extras.
     path : str
@@ -52,7 +53,7 @@ class Record:
 
     def __post_init__(self):
         where = self.path or "the record"
-        known = checks.DRIVE if "torque" in self.channels else checks.CHANNELS
+        known = checks.DRIVE if {"torque", "command"} & set(self.channels) else checks.CHANNELS
         unknown = [name for name in self.channels if name not in known]
         if unknown:
             wanted = f"{checks.listed(checks.CHANNELS)}, and other columns as extras"
@@ -106,8 +107,9 @@ class Record:
 
     @property
     def input_name(self) -> str | None:
-        """The channel that drives: "x", "F", "torque", or None in a free decay."""
-        return {"base_motion": "x", "transmitted": "x", "force": "F", "free_decay": None, "drive": "torque"}[self.kind]
+        """The channel that drives: "x", "F", "torque", "command", or None in a free decay."""
+        push = "torque" if "torque" in self.channels else "command"
+        return {"base_motion": "x", "transmitted": "x", "force": "F", "free_decay": None, "drive": push}[self.kind]
 
     @property
     def observed_name(self) -> str:

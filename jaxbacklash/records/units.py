@@ -30,7 +30,7 @@ UNITS: dict[str, dict[str, float]] = {
     **dict.fromkeys(("F", "T"), FORCE | TORQUE),
     "torque": TORQUE,
     "current": CURRENT,
-    **dict.fromkeys(("motor", "link"), ANGLE),
+    **dict.fromkeys(("command", "motor", "link"), ANGLE),
 }
 
 

@@ -2,13 +2,17 @@ r"""A start for the fit of a drive: weak-form regressions on the torque and on w
 
 With an encoder on motor and link the joint cancels from the balance of the whole,
 :math:`N \tau = N (J_m \ddot\theta + c_m \dot\theta) + J \ddot y`, which tells both inertias; what is left is a joint on a base
-whose motion is measured, :math:`x = \theta / N`, as in `jaxbacklash.regression.equation_error`.
+whose motion is measured, :math:`x = \theta / N`, as in `jaxbacklash.regression.equation_error`. In units of its gain, a servo's
+torque is what its command is ahead of the motor behind its gear.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from ..effects import Motor, Servo
 from ..records import Record
 from ..signals import Bump
 from .equation_error import Start, estimate
@@ -39,16 +43,31 @@ def centred(held: np.ndarray) -> np.ndarray:
     return 0.5 * (held + np.concatenate([held[:1], held[:-1]]))
 
 
-def start_of_drive(record: Record) -> tuple[tuple[float, float], Start]:
-    """Where a fit of a drive begins: inertia and friction of its motor, and the joint with its link.
+def start_of_drive(record: Record, inertia: float | None = None) -> tuple[Motor, Start]:
+    """Where a fit of a drive begins: its motor, and the joint with its link.
 
     Parameters
     ----------
     record : of a drive with an encoder on motor, on link, or on both
+    inertia : of the link [kg m^2], which is the scale of a record of a servo's command; None: there all is per unit inertia of
+        the motor
     """
+    if record.input_name == "command":
+        return _start_of_servo(record, inertia)
     if record.relative is None:
         found = search_hidden(record)
         joint = Start(found.inertia, found.backlash, found.stiffness, found.damping, found.misfit)
-        return (found.motor_inertia, found.friction), joint
-    motor_inertia, friction, inertia = inertias(record)
-    return (motor_inertia, friction), estimate(record.on_its_base(), inertia=inertia)
+        return Motor(found.motor_inertia, found.friction, record.ratio), joint
+    motor_inertia, friction, of_link = inertias(record)
+    return Motor(motor_inertia, friction, record.ratio), estimate(record.on_its_base(), inertia=of_link)
+
+
+def _start_of_servo(record: Record, inertia: float | None) -> tuple[Motor, Start]:
+    seen = {name: record.channels[name] for name in record.observed_names}
+    ahead = record.channels["command"] - seen["motor"] / record.ratio
+    motor, joint = start_of_drive(replace(record, channels={"torque": ahead, **seen}))
+    own = float(motor.motor_inertia)
+    gain = 1.0 / own if inertia is None else inertia / joint.inertia
+    servo = Servo(gain * own, 0.0, record.ratio, gain, gain * float(motor.motor_damping))
+    stiffness = None if joint.stiffness is None else gain * joint.stiffness
+    return servo, replace(joint, inertia=gain * joint.inertia, stiffness=stiffness, damping=gain * joint.damping)

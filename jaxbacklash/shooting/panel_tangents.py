@@ -30,7 +30,9 @@ MOVING, DRIVEN = 4, 6
 
 def drive(w: Windows, u: Array, du: Array, force: Array) -> Drive:
     """The drive at a panel edge: ``u``, ``du`` is the splined input (base motion, force or torque at a motor) and its rate,
-    ``force`` exact."""
+    ``force`` exact, or the exact command that a servo holds from here on."""
+    if w.by_command:
+        return Drive(u, du, jnp.zeros_like(u), None, force)
     if w.by_torque:
         return Drive(jnp.zeros_like(u), jnp.zeros_like(u), force, None, u)
     if w.by_force:

@@ -46,17 +46,17 @@ PARTS = (1, 2, 3, 4, 6, 8, 12, 16)
 
 class Windows(eqx.Module):
     """Arrays of W windows with M samples and P panels each, and m spline coefficients per window (m = 0: no input, or a
-    rough force that is taken as exact, straight between its samples).
+    rough force that is taken as exact, straight between its samples, or the command of a servo, likewise exact, and held).
 
     ``t0`` (W,) start times [s]; ``measured`` (W, M); ``weight`` (W, M), 1/noise or 0 where there is no sample; ``tie`` (W,), 1
     where the window runs on into the next; ``input`` (W, R) measured input and ``input_weight`` (W, R), R = M samples and m - 1
     knots where its spline is to have no corner; ``shown`` (R, m+5) what the coefficients come to there; ``force`` (W, P+1) exact
-    force at panel edges; ``coefficients`` (W, m) start of the spline; ``basis`` (6, P+1, m+5) the splines and their derivatives
+    force, or command, at panel edges; ``coefficients`` (W, m) start of the spline; ``basis`` (6, P+1, m+5) the splines and their derivatives
     at panel edges; ``starts`` (2, W) position and speed of the link from the smoothed data; ``drop`` (2,) how sharply ends tie to
     starts [1/rad, s/rad]; ``used`` how many windows, the first ones, hold data; ``told`` () how much of the variance that
     ``input_weight`` stands for the input shows, 1 but for one as good as exact, which is given a little noise; ``by_force`` True
     when the spline is of the force, ``by_torque`` when it is of the torque at the motor of a drive: then it is of degree 0, one
-    coefficient a sample, for as long as the controller holds the torque. Of C channels ``measured`` and ``weight`` are (W, M C),
+    coefficient a sample, for as long as the controller holds the torque; ``by_command`` when ``force`` is a command. Of C channels ``measured`` and ``weight`` are (W, M C),
     the channels of a sample together; ``starts`` and ``drop`` then have the motor's position and speed behind those of the link.
     """
 
@@ -78,6 +78,7 @@ class Windows(eqx.Module):
     every: int = eqx.field(static=True)
     by_force: bool = eqx.field(static=True)
     by_torque: bool = eqx.field(static=True, default=False)
+    by_command: bool = eqx.field(static=True, default=False)
 
     @property
     def count(self) -> int:
@@ -147,7 +148,7 @@ def cut(
     """
     lead = records[0]
     for other in records[1:]:
-        if other.kind != lead.kind or other.observed_name != lead.observed_name:
+        if (other.kind, other.input_name, other.observed_name) != (lead.kind, lead.input_name, lead.observed_name):
             raise BadInput(
                 f"{other.path}: has channels of a {other.kind} record, {lead.path} of a {lead.kind} record; fit them apart"
             )
@@ -173,7 +174,8 @@ def cut(
         step = 4 if room >= LEAST_INTERVALS else 2
         intervals = -(-max(needed, room, least) // step) * step
         needed = next(n for n in range(needed, intervals + 1) if intervals % n == 0)
-    cut_one = _cut_drive if driver == "torque" else _cut_one
+    drive = lead.kind == "drive"
+    cut_one = _cut_drive if drive else _cut_one
     parts = [cut_one(r, length, every, intervals, needed, driver) for r in records]
     total = bucket(sum(p["measured"].shape[0] for p in parts))
     stacked: dict[str, np.ndarray] = {}
@@ -185,7 +187,7 @@ def cut(
     counts = [p["measured"].shape[0] for p in parts]
     noise = tuple(float(p["noise"]) for p in parts)
     drop = 50.0 / np.mean(noise) * np.array([1.0, SPEED * max(length * dt, SPAN)])
-    if driver == "torque":
+    if drive:
         drop = np.mean([p["drop"] for p in parts], axis=0)
     starts = np.ascontiguousarray(stacked.pop("starts").T)
     panel = dt / every
@@ -194,7 +196,7 @@ def cut(
         shown=np.eye(length) if driver == "torque" else _shown(length, intervals, needed), drop=drop,
         panel=np.asarray(panel), every=every, starts=starts,
         used=np.asarray(sum(counts)), told=np.mean([p["told"] for p in parts]), by_force=driver == "F",
-        by_torque=driver == "torque", **stacked,
+        by_torque=driver == "torque", by_command=lead.input_name == "command", **stacked,
     )  # fmt: skip
     layout = Layout(
         first=tuple(int(v) for v in np.cumsum([0, *counts[:-1]])),
@@ -204,7 +206,7 @@ def cut(
         input_noise=tuple(float(p["input_noise"]) for p in parts),
         dt=dt,
         length=length,
-        channels=lead.observed_names if driver == "torque" else (),
+        channels=lead.observed_names if drive else (),
         beside=tuple(p["beside"] for p in parts if "beside" in p),
     )
     return windows, layout
@@ -212,9 +214,9 @@ def cut(
 
 def _driver(records: Sequence[Record]) -> str | None:
     """The measured input that gets a spline and shares in the misfit: base motion, a force where it is smooth, or the torque that
-    the controller of a drive holds."""
+    the controller of a drive holds. The command of a servo is followed exactly."""
     if records[0].kind == "drive":
-        return "torque"
+        return "torque" if records[0].input_name == "torque" else None
     if "x" in records[0].channels:
         return "x"
     if "F" in records[0].channels and all(way(r) == "smooth" for r in records):
@@ -291,7 +293,7 @@ def _cut_one(record: Record, length: int, every: int, intervals: int, needed: in
 
 
 def _cut_drive(record: Record, length: int, every: int, *_: Any) -> dict[str, Any]:
-    """As `_cut_one`, of a drive: one or two encoders, and the torque that is held for each sample."""
+    """As `_cut_one`, of a drive: one or two encoders, and the torque or command that is held for each sample."""
     dt, samples, channels = record.dt, record.samples, record.observed_names
     count = -(-samples // length)
     rows = count + 1
@@ -299,8 +301,10 @@ def _cut_drive(record: Record, length: int, every: int, *_: Any) -> dict[str, An
     noise = {name: channel_noise(record, name) for name in channels}
     seen = np.stack([record.channels[name] for name in channels], axis=1)
     weight = np.stack([np.full(samples, 1.0 / noise[name]) for name in channels], axis=1)
-    own = torque_noise(record)
-    torque = record.channels["torque"]
+    told = record.input_name == "command"
+    own = 0.0 if told else torque_noise(record)
+    pushed = record.channels["command" if told else "torque"]
+    torque = np.zeros((rows, 0)) if told else _rows(pushed, rows, length)
     at_motor = noise.get("motor", record.ratio * noise.get("link", 0.0))
     at_link = noise.get("link", at_motor / record.ratio)
     sharp = np.array([1.0, SPEED * max(length * dt, SPAN)])
@@ -310,12 +314,12 @@ def _cut_drive(record: Record, length: int, every: int, *_: Any) -> dict[str, An
         "weight": _rows(weight.ravel(), rows, length * len(channels)),
         "tie": np.concatenate([np.ones(count - 1), np.zeros(2)]),
         "noise": noise[record.observed_name],
-        "input": _rows(torque, rows, length),
-        "input_weight": _rows(np.full(samples, 1.0 / own), rows, length),
+        "input": torque,
+        "input_weight": torque if told else _rows(np.full(samples, 1.0 / own), rows, length),
         "input_noise": own,
         "told": 1.0,
-        "coefficients": _rows(torque, rows, length),
-        "force": np.zeros((rows, length * every + 1)),
+        "coefficients": torque,
+        "force": _force_rows(np.repeat(pushed, every) if told else np.zeros(1), rows, length * every),
         "drop": 50.0 * np.concatenate([sharp / at_link, sharp / at_motor]),
         "starts": _drive_starts(record, length * dt, t0),
     }

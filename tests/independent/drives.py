@@ -188,3 +188,30 @@ def servo_record(
     rounded = [np.round(states[:, at] / count) * count for at, count in zip((0, 2), counts)]
     read = torque + noise * np.std(torque) * rng.standard_normal(torque.size)
     return {"t": np.arange(torque.size) / rate, "torque": read, "motor": rounded[0], "link": rounded[1]}
+
+
+@njit(cache=True)
+def run_commanded(p, start, command, servo, dt, parts):
+    """States (N, 4) at the samples of a drive whose torque is ``servo`` = (Kp, Kd, tmax): Kp (command - th / N) - Kd th', within
+    +-tmax, at every step, of a command (N,) held for ``dt`` [rad]."""
+    q, before = start.copy(), np.zeros(2)
+    out = np.empty((command.size, 4))
+    h = dt / parts
+    for i in range(command.size):
+        out[i] = q
+        for _ in range(parts):
+            th, dth = q[0] + 0.5 * h * q[1], q[1] + 0.5 * h * before[0]
+            push = servo[0] * (command[i] - th / p[RATIO]) - servo[1] * dth
+            _step(p, q, min(max(push, -servo[2]), servo[2]), h, before)
+    return out
+
+
+def commanded_record(
+    rig: DriveRig, servo: tuple[float, float, float], effects: dict[str, dict[str, float]], rng: np.random.Generator,
+    duration: float = 20.0, rate: float = 1000.0, bits: tuple[int, int] = (14, 17), parts: int = 100,
+) -> dict[str, np.ndarray]:  # fmt: skip
+    """A record of a servo that only logs what it was told: t, command [rad, at the link], motor and link in whole counts."""
+    command = followed(rig, rng, duration, rate)[0] / rig.ratio
+    states = run_commanded(packed(rig, effects), np.zeros(4), command, np.array(servo), 1.0 / rate, parts)
+    motor, link = (np.round(states[:, at] / c) * c for at, c in zip((0, 2), (2.0 * np.pi / 2**b for b in bits)))
+    return {"t": np.arange(command.size) / rate, "command": command, "motor": motor, "link": link}

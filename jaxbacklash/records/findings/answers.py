@@ -42,7 +42,7 @@ def answers(t: np.ndarray, channels: Mapping[str, Channel]) -> list[Finding]:
     if name is None:
         return []
     channel = channels[name]
-    drive = next((one for one in ("x", "F", "torque") if one in channels), None)
+    drive = next((one for one in ("x", "F", "torque", "command") if one in channels), None)
     found = _nothing(channel, name, drive)
     if found:
         return found

@@ -57,7 +57,8 @@ def find(
     # What one check finds would set off the next: a code stands out, a wrap shifts, and neither follows anything. So a channel is
     # looked at further once it is mended, and the whole record once no channel waits for an answer.
     for check in (jumps.known_wraps, spikes.codes, jumps.wraps, held_values.held_values, spikes.spikes):
-        new = _open(check(_others(looked_at, found)), options, units_stated)
+        measured = {name: channel for name, channel in looked_at.items() if name != "command"}  # what was told may jump, and stay
+        new = _open(check(_others(measured, found)), options, units_stated)
         looked_at = _mended(t, looked_at, new) if new else looked_at
         found += new
     channels = {name: channel.values for name, channel in looked_at.items()}

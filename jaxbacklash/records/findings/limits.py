@@ -22,8 +22,8 @@ switched between two values gets there in one step, and means it."""
 
 def clipped(channels: Mapping[str, Channel]) -> list[Finding]:
     """Sensors at their stop, and forces that were limited."""
-    # A torque that stays at its limit is what the motor put out.
-    return [one for name, channel in channels.items() if name != "torque" for one in _clipped(channel, name)]
+    # A torque that stays at its limit is what the motor put out, and a command is what was told.
+    return [one for name, channel in channels.items() if name not in ("torque", "command") for one in _clipped(channel, name)]
 
 
 def _clipped(channel: Channel, name: str) -> list[Finding]:

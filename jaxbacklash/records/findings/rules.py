@@ -87,6 +87,7 @@ RULES: dict[str, Rule] = {
         "as for a gear",
         ASK,
     ),
+    "command": Rule("a command that the motor follows at another ratio than its gear's", "as for a gear", ASK),
     "turned-link": Rule("a link that turns against the motor of its drive", "as for a gear", ASK, "--sign"),
     "absolute": Rule("z that follows x one to one in slow motion: it is y", "as for a gear", ASK),
     "contradiction": Rule("x, y and z all present, z not y - x", "a tenth of z's own standard deviation", WARN),
