@@ -21,11 +21,11 @@ from .effects import FlexibleLink as FlexibleLink
 from .effects import GapSpring as GapSpring
 from .effects import Gravity as Gravity
 from .effects import LearnedTorque as LearnedTorque
-from .effects import LinearGravity as LinearGravity
 from .effects import LimitedServo as LimitedServo
+from .effects import LinearGravity as LinearGravity
 from .effects import Motor as Motor
-from .effects import Servo as Servo
 from .effects import Preload as Preload
+from .effects import Servo as Servo
 from .effects import Spring as Spring
 from .errors import BadInput as BadInput
 from .errors import NoAnswer as NoAnswer

@@ -188,8 +188,8 @@ class MotorTorque(AbstractExcitation):
 
 
 class HeldTorque(AbstractExcitation):
-    """Samples of the torque at the motor of a drive, each held until the next: what a controller puts out. Of a motor with a servo
-    these are of its position command [rad].
+    """Samples of the torque at the motor of a drive, each held until the next: what a controller puts out. Of a motor with a
+    servo these are of its position command [rad].
 
     Attributes: ``t0`` time of the first sample and ``dt`` spacing [s]; ``torque`` (N,) [N m]. Before the first and after the last
     sample those go on.

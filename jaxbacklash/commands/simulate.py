@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from ..effects import Servo
 from ..errors import BadInput, NoAnswer
 from ..excitation import (
     AbstractExcitation,
@@ -73,8 +74,7 @@ def run(
         raise BadInput(f"--out {out}: found the suffix {out.suffix!r}, wanted one of {', '.join(WRITERS)}")
     system = load_model(model)
     rng = np.random.default_rng(seed)
-    ratio = None if system.motor is None else float(system.motor.ratio)
-    measured = _measured(excitation, ratio)
+    measured = _measured(excitation, system)
     drive: AbstractExcitation
     if measured is None:
         drive, t0 = parse_excitation(excitation, as_force, duration, rng), 0.0
@@ -82,7 +82,7 @@ def run(
             drive = MotorTorque(drive)
     elif measured.kind == "drive":
         t0, duration = float(measured.t[0]), float(measured.t[-1] - measured.t[0])
-        drive = HeldTorque(_f(t0), _f(measured.dt), measured.channels["torque"])
+        drive = HeldTorque(_f(t0), _f(measured.dt), measured.channels[measured.input_name or "torque"])
     else:
         between = input_between(model)
         drive = measured_base(measured, between=between, panels=default_panels(system, measured.rate_hz))
@@ -138,8 +138,8 @@ def check_size(system: System, drive: AbstractExcitation, duration: float, rate:
         bounded(where, panels * lines, MOST_SINES, "values of sines", "shorten --duration or take fewer lines")
 
 
-def _measured(text: str, ratio: float | None) -> Record | None:
-    """The record that ``--excitation`` names, of a drive with this ``ratio``; None where it names none.
+def _measured(text: str, system: System) -> Record | None:
+    """The record that ``--excitation`` names, of a drive for a model of one; None where it names none.
 
     Raises
     ------
@@ -148,12 +148,17 @@ def _measured(text: str, ratio: float | None) -> Record | None:
     """
     if text.partition(":")[0] in WANTED or not Path(text).suffix:
         return None
-    record = read_record(text, ratio=ratio)
+    record = read_record(text, ratio=None if system.motor is None else float(system.motor.ratio))
     if record.input_name is None:
         raise BadInput(f"--excitation {text}: the record has neither x nor F to drive with")
-    if (record.kind == "drive") != (ratio is not None):
-        raise BadInput(f"--excitation {text}: is a record of kind {record.kind}, which does not drive this model; wanted "
-                       + ("x or F" if ratio is None else "the torque at the motor"))  # fmt: skip
+    told = "command" if isinstance(system.motor, Servo) else "torque"
+    drives = record.kind != "drive" if system.motor is None else record.input_name == told
+    if not drives:
+        wanted = {"command": "the command of its servo", "torque": "the torque at the motor"}[told]
+        raise BadInput(
+            f"--excitation {text}: is a record of kind {record.kind} with {record.input_name}, which does not drive this model; "
+            f"wanted {'x or F' if system.motor is None else wanted}"
+        )
     return record
 
 

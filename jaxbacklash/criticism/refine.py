@@ -109,7 +109,7 @@ def refine(
         names, model = free_names(system), "given"
     fitter = ModelFitter(record, system, names, window, beside=heldout)
     fitter.take_laws(laws_for(system, translational=translational))
-    per_inertia = inertia is None and record.kind not in ABSOLUTE and model != "given"
+    per_inertia = inertia is None and (record.kind not in ABSOLUTE or record.input_name == "command") and model != "given"
     judged = _Judge(fitter, heldout, model, per_inertia, translational, start)
     clock["prepare"] = time.perf_counter()
     search = EvidenceSearch(fitter, progress)

@@ -40,13 +40,14 @@ class Motor(eqx.Module):
 class Servo(Motor):
     r"""A motor that follows a position command u of the link: :math:`\tau = K_p (u - \theta / N) - K_d \dot\theta`.
 
-    The motor's viscous friction acts as :math:`K_d` does, which stands for both. Without a torque, all inertias, gains and
-    torques can be multiplied by one number without changing the motion.
+    :math:`K_p` acts on the error of the link's position, :math:`K_d` on the motor's speed, as its viscous friction does, so that
+    it stands for both. Without a torque, all inertias, gains and torques can be multiplied by one number without changing the
+    motion.
     """
 
     motor_damping: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, fixed=True, label="viscous friction of the motor")
-    Kp: Scalar = param(unit="N m/rad", lower=0.0, label="gain of the servo on the error of the link's position")
-    Kd: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, label="gain on the motor's speed, its viscous friction in it")
+    Kp: Scalar = param(unit="N m/rad", lower=0.0, label="servo gain Kp")
+    Kd: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, label="servo gain Kd, motor friction in it")
 
     @property
     def pace(self) -> Scalar:
@@ -57,11 +58,11 @@ class Servo(Motor):
 
 
 class LimitedServo(Servo):
-    r"""A servo whose torque stays within :math:`\pm t_\mathrm{max}`: while it does not, the motor's own friction is told apart."""
+    r"""A servo whose torque stays within :math:`\pm t_\mathrm{max}`; where that is met the motor's own friction shows."""
 
     motor_damping: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, label="viscous friction of the motor")
-    Kd: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, label="gain of the servo on the motor's speed")
-    tmax: Scalar = param(unit="N m", lower=0.0, label="largest torque of the servo")
+    Kd: Scalar = param(unit="N m s/rad", null=0.0, lower=0.0, label="servo gain Kd")
+    tmax: Scalar = param(unit="N m", lower=0.0, label="largest servo torque")
 
     def pushed(self, given: Scalar, th: Scalar, dth: Scalar) -> Scalar:
         return jnp.clip(super().pushed(given, th, dth), -self.tmax, self.tmax)

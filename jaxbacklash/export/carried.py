@@ -5,6 +5,7 @@ Between `jaxbacklash.model_file`, which reads the model, and `jaxbacklash.comman
 
 from __future__ import annotations
 
+from ..effects import Servo
 from ..errors import BadInput
 from ..system import System
 from .mjcf import LAWS as LAWS_OF_MJCF
@@ -51,6 +52,11 @@ def exported(system: System, target: str) -> str:
     if system.observed == "T":
         raise BadInput(
             f"--to {target}: the base of this model moves as prescribed (observed is T); wanted a drive, or observed y"
+        )
+    if isinstance(system.motor, Servo):
+        raise BadInput(
+            f"--to {target}: the motor of this model follows a command by a servo (Kp, Kd), and what is handed on is driven by "
+            "its torque; take them out of the model file and write the servo there, or keep to jaxbacklash simulate"
         )
     if system.contact is None:
         raise BadInput(f"--to {target}: the model has no joint (no stiffness), so that there is nothing to hand on")

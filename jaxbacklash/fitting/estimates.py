@@ -207,7 +207,8 @@ def _joint_reasons(
     stiffness = float(system.contact.stiffness)
     if all(r.relative is None and r.kind == "drive" for r in records):
         clear = stiffness > SURE * stderr.get("stiffness", 0.0) and np.isfinite(stderr.get("stiffness", 0.0))
-        why = f"the torque does not show a contact: its stiffness is not clear of zero by {SURE:g} standard errors"
+        shown = f"the {records[0].input_name} does not show a contact"
+        why = f"{shown}: its stiffness is not clear of zero by {SURE:g} standard errors"
         return {} if clear else {name: (UNDETERMINED, why) for name in ("backlash", "stiffness")}
     touch = [contacts(r, low, high) for r in records]
     above, below = max(c.above for c in touch), max(c.below for c in touch)

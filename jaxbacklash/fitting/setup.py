@@ -156,8 +156,8 @@ def _system(start: Start, record: Record, model: str) -> System:
 
 
 def free_names(system: System, beside: Iterable[str] | None = None) -> tuple[str, ...]:
-    """All parameters that a fit may change: everything but the inertia (a servo's motor's), numerical settings, shapes at their usual values, and
-    what an effect yields to those of ``beside`` (default: all that the system has)."""
+    """All parameters that a fit may change: everything but the inertia (of its motor where that has a servo), numerical settings,
+    shapes at their usual values, and what an effect yields to those of ``beside`` (default: all that the system has)."""
     present = set(system.effects if beside is None else beside)
     effects = system.effects.items()
     held = {f"{name}.{own}" for name, effect in effects for own, other in effect.yields.items() if other in present}

@@ -15,7 +15,8 @@ from .findings.quantities import degrees
 CHANNELS = ("x", "z", "y", "F", "T")
 """Base motion, relative motion, absolute motion, force on the link, transmitted force (the last two may be torques)."""
 DRIVE = ("torque", "command", "motor", "link")
-"""Torque at the motor of a drive, or the position command of its servo, and what its encoders show: the motor's shaft, and the link behind the gear."""
+"""Torque at the motor of a drive, or the position command of its servo, and what its encoders show: the motor's shaft, and the
+link behind the gear."""
 PUSHES = ("torque", "current", "command")
 """What may drive the motor; of several in a file the first is taken, unless another is mapped."""
 OF_A_DRIVE = (*PUSHES, "motor", "link")

@@ -155,9 +155,8 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
     if options.resample:
         t, channels, extras = _even(t, channels, extras, options, where)
     gear: dict[str, Any] = {"ratio": options.ratio or 1.0, "per_kt": "current" in picked.channels and options.kt is None}
-    record = Record(
-        t, channels, where, extras, _confirmed(picked, options), tuple(findings), **(gear if {"torque", "command"} & set(channels) else {})
-    )
+    gear = gear if {"torque", "command"} & set(channels) else {}
+    record = Record(t, channels, where, extras, _confirmed(picked, options), tuple(findings), **gear)
     undriven(record, table, picked, options)
     for sentence in tells(channels, geared=options.ratio is not None):
         warnings.warn(f"{where}: {sentence}", UserWarning, stacklevel=3)

@@ -10,7 +10,7 @@ from ..causes import Cause
 from ..criticism import Ranking, Refinement
 from ..criticism.refinement import alternatives_sentence, doubted
 from ..fitting import Comparison, Fit, Score, percent
-from ..fitting.result import doubt, verdict_text
+from ..fitting.result import doubt, verdict_text, without_inertia
 from ..plot.style import format_evidence, short
 from ..plot.words import stage_name
 from ..residuals import Findings, Latent, Surface
@@ -62,7 +62,7 @@ def _share(score: Score) -> str:
 
 
 def _per_inertia(fit: Fit) -> list[str]:
-    return ["No inertia was given: stiffness, damping and torques are per unit inertia."] if fit.per_inertia else []
+    return [f"N{without_inertia(fit)[1:]}."] if fit.per_inertia else []
 
 
 @card_of.register

@@ -64,6 +64,7 @@ def summarise(result: Entry) -> dict[str, Any]:
         "cross_check": cross_check_table(result.get("cross_check"), stages[-1] if stages else {}),
         "facts": [*facts(result, record, path, stages or [best_method(result)]), *chosen(result), *rests_on(result)],
         "per_inertia": bool(result.get("per_inertia")),
+        "per_inertia_of": " of the motor, whose torque was not measured" if "command" in record.get("channels", []) else "",
         "command_line": str(result.get("command_line") or ""),
         "version": str(result.get("version") or ""),
     }

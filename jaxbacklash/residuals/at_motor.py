@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..effects import Servo
 from ..records import Record
 from ..regression.motor_form import MotorForm
 from ..shooting.torque_input import channel_noise, torque_noise
@@ -71,5 +72,7 @@ def missing_at_motor(system: System, free: tuple[str, ...], record: Record) -> A
     whole = float(form.average(np.ones(record.samples))[0])
     of_link = float(system.inertia) / float(motor.ratio) * channel_noise(record, "link")
     of_motor = float(motor.motor_inertia) * channel_noise(record, "motor")
-    noise = np.hypot(torque_noise(record) * form.loudness(0), np.hypot(of_link, of_motor) * form.loudness(2))
+    servo = isinstance(motor, Servo)  # its torque is as uncertain as the motor's place
+    made = float(motor.Kp) / record.ratio * channel_noise(record, "motor") if servo else torque_noise(record)
+    noise = np.hypot(made * form.loudness(0), np.hypot(of_link, of_motor) * form.loudness(2))
     return AtMotor(float(np.sqrt(energy / rest.size)) / whole, float(noise) / whole, share)

@@ -71,7 +71,7 @@ def find(
     found += new
     for whole in (
         lambda: limits.clipped(looked_at) or held_values.held_rows(looked_at) or jumps.shifts(t, looked_at),
-        lambda: relations.relations(channels, extras) or drives.drives(channels, options),
+        lambda: relations.relations(channels, extras) or drives.drives(t, channels, options),
         lambda: answers.answers(t, looked_at),
     ):
         if not _waiting(found):
