@@ -285,8 +285,10 @@ def test_model_files_that_are_no_servo(text, said, tmp_path):
 def test_command_and_torque_are_not_taken_for_each_other(written, tmp_path):
     record = jb.read_record(written(), ratio=50.0)
     plain = jb.drive(*(getattr(RIG, n) for n in NAMES))
-    with pytest.raises(jb.BadInput, match="drives by command, and the model is of a motor driven by its torque"):
+    with pytest.raises(jb.BadInput, match="drives by command, and the model is not of a motor with a servo"):
         jb.compare(plain, record)
+    with pytest.raises(jb.BadInput, match="drives by command, and the model is not of a motor with a servo"):
+        jb.fit(record, system=plain)
     (tmp_path / "rig.toml").write_text(jb.dump_model(plain))
     told = call(["simulate", "rig.toml", "--excitation", "run.csv", "--rate", "500", "--out", "again.csv"], tmp_path)
     assert told.code == 2

@@ -28,7 +28,7 @@ def check_heldout(records: Sequence[Record], heldout: Record | None) -> None:
         return
     lead = records[0]
     words = " ".join(["t", *lead.channels])
-    if heldout.kind != lead.kind or heldout.observed_name != lead.observed_name:
+    if any(getattr(heldout, of) != getattr(lead, of) for of in ("kind", "input_name", "observed_name")):
         raise BadInput(
             f"--heldout {heldout.path}: is a {_words(heldout)} record with t {' '.join(heldout.channels)}, and {lead.path} a "
             f"{_words(lead)} record with {words}; wanted a record of that kind with these channels"

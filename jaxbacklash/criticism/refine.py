@@ -98,7 +98,7 @@ def refine(
     check_size([record] if heldout is None else [record, heldout])
     check_answers([record])
     tell_way([record] if heldout is None else [record, heldout])
-    if heldout is not None and heldout.kind != record.kind:
+    if heldout is not None and (heldout.kind, heldout.input_name) != (record.kind, record.input_name):
         raise BadInput(f"{heldout.path}: is a {heldout.kind} record, {record.path} a {record.kind} record; wanted two of a kind")
     clock = {"start": time.perf_counter()}
     progress("reading noise and a first estimate", 0.02)

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from ..effects import Servo
 from ..errors import BadInput, NoAnswer
 from ..parameters import channel_unit
 from ..records import Record, oriented
@@ -73,9 +72,6 @@ def _of_this_drive(system: System, record: Record) -> System:
         raise BadInput(
             f"{where}: is of a gear of {record.ratio:g}, the model of {float(system.motor.ratio):g}; wanted one --ratio"
         )
-    if isinstance(system.motor, Servo) != (record.input_name == "command"):
-        one = "with a servo, which is told a command" if isinstance(system.motor, Servo) else "driven by its torque"
-        raise BadInput(f"{where}: drives by {record.input_name}, and the model is of a motor {one}; wanted one of a kind")
     return dataclasses.replace(system, observed=" ".join(record.observed_names))
 
 

@@ -10,7 +10,8 @@ from itertools import pairwise
 import equinox as eqx
 import numpy as np
 
-from ..errors import NoAnswer
+from ..effects import Servo
+from ..errors import BadInput, NoAnswer
 from ..mechanics import AbstractEffect
 from ..one_encoder import one_side
 from ..parameters import values, with_values
@@ -224,10 +225,13 @@ def prepare(
 
     ``intervals`` asks for at least so many spline intervals a window, so that two records may share a compiled program.
     """
-    dt = records[0].dt
+    dt, driver, servo = records[0].dt, records[0].input_name, isinstance(system.motor, Servo)
+    if records[0].kind == "drive" and servo != (driver == "command"):
+        told = "of a motor with a servo, which is told a command" if servo else "not of a motor with a servo (Kp, Kd)"
+        raise BadInput(f"{records[0].path or 'the record'}: drives by {driver}, and the model is {told}; wanted one of a kind")
     window = score_window(dt, window)
     # Without the noise of a base motion a record says ten times more: its panels have to be finer.
-    noisy = records[0].input_name == "torque" or records[0].kind == "base_motion"
+    noisy = driver == "torque" or records[0].kind == "base_motion"
     finer = 1.0 if noisy else 2.0
     longest = longest_panel(dt) / finer
     if system.contact is not None:
@@ -238,7 +242,7 @@ def prepare(
         crossing = min(crossing_time(r, play, period / 16.0) for r in records)
         longest = min(longest, max(min(period / (32.0 * finer), max(crossing, period / 256.0)), dt / PANELS))
     # Each sample of a held torque is an unknown of its window: the shorter windows are, the less work.
-    length = HELD_WINDOW * dt if records[0].input_name == "torque" else shooting_window(window)
+    length = HELD_WINDOW * dt if driver == "torque" else shooting_window(window)
     windows, layout = cut(records, length, longest_panel=longest, least=intervals)
     if system.observed == "T" and system.contact is not None:
         # Ties are of motion: the noise of a force counts as the motion that would make it in contact.

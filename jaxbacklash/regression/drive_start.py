@@ -16,6 +16,7 @@ import numpy as np
 from ..effects import LimitedServo, Motor, Servo
 from ..errors import BadInput
 from ..records import Record
+from ..records.checks import LARGEST
 from ..signals import Bump
 from .along_motion import smooth
 from .equation_error import Start, estimate
@@ -81,6 +82,11 @@ def _start_of_servo(record: Record, inertia: float | None) -> tuple[Motor, Start
     seen = {name: record.channels[name] for name in record.observed_names}
     ahead = record.channels["command"] - seen["motor"] / record.ratio
     as_torque = replace(record, channels={"torque": ahead, **seen})
+    if not (record.blind or inertias(as_torque)[0] < LARGEST):
+        raise BadInput(
+            f"{record.path or 'the record'}: the motor does not move as a servo's does that is told this command; wanted the "
+            "position of the link in rad, to which one of the motor's shaft is brought by --scale command=1/N, with its sign"
+        )
     limit = None if record.blind else limit_of_servo(as_torque)
     if limit is not None:
         lag, most = limit
@@ -88,11 +94,6 @@ def _start_of_servo(record: Record, inertia: float | None) -> tuple[Motor, Start
         as_torque = as_torque.replace(torque=ahead)
     motor, joint = start_of_drive(as_torque)
     own, rubs = float(motor.motor_inertia), float(motor.motor_damping)
-    if not (np.isfinite(own) and np.isfinite(joint.inertia)):
-        raise BadInput(
-            f"{record.path or 'the record'}: the motor does not move as a servo's does that is told this command; wanted the "
-            "position of the link in rad, to which one of the motor's shaft is brought by --scale command=1/N, with its sign"
-        )
     gain = 1.0 / own if inertia is None else inertia / joint.inertia
     servo = Servo(gain * own, 0.0, record.ratio, gain, gain * rubs)
     if limit is not None:

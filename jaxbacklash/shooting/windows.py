@@ -151,7 +151,8 @@ def cut(
     for other in records[1:]:
         if (other.kind, other.input_name, other.observed_name) != (lead.kind, lead.input_name, lead.observed_name):
             raise BadInput(
-                f"{other.path}: has channels of a {other.kind} record, {lead.path} of a {lead.kind} record; fit them apart"
+                f"{other.path}: has channels of a {other.kind} record ({' '.join(other.channels)}), {lead.path} of a "
+                f"{lead.kind} record ({' '.join(lead.channels)}); fit them apart"
             )
         if abs(other.dt - lead.dt) > 1e-6 * lead.dt:
             raise BadInput(

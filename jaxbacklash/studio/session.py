@@ -209,7 +209,7 @@ class Session:
         record, held = self.record.record, None if self.heldout is None else self.heldout.record
         if self.heldout is not None and held is None:
             raise BadInput(f"the held-out record cannot be used: {self.heldout.wrong}")
-        if held is not None and (held.kind, held.observed_name) != (record.kind, record.observed_name):
+        if held is not None and any(getattr(held, of) != getattr(record, of) for of in ("kind", "input_name", "observed_name")):
             channels = " ".join(record.channels)
             raise BadInput(f"the held-out record has {' '.join(held.channels)}, wanted one of the record's kind, with {channels}")
         return record, held

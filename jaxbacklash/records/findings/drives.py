@@ -18,7 +18,6 @@ from .relations import LIKE_ONE, octave_gains, of_teeth, slow_gain
 
 GOES_ALONG = 0.9
 """Share of the link's power that goes with the motor's from which on the two tell the gear between them."""
-
 UNLIKE = 0.02
 """Share of a command's power that motion does not explain from which on nothing is said of its size: its servo was limited, or it
 is something else."""
@@ -75,7 +74,7 @@ def _told(t: np.ndarray, channels: Mapping[str, np.ndarray], ratio: float) -> li
         what = "is followed by the motor the other way round"
         return [Finding("command", ASK, "command", what, "--sign command", size=followed)]
     what = (
-        f"is {abs(followed):.4g} times the place to which the motor goes behind its gear of {ratio:g}; wanted the position of the "
+        f"is {abs(followed):.4g} times the place to which the motor goes behind a gear of {ratio:g}; wanted the position of the "
         "link in rad, to which one of the motor's shaft is brought by --scale command=1/N"
     )
     remedy = f"--scale command={1.0 / ratio:.6g}" if ratio / LIKE_ONE < followed < ratio * LIKE_ONE else ""
