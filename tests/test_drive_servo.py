@@ -12,9 +12,8 @@ import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.mechanics import Drive
-from jaxbacklash.parameters import ravel, specs, unravel, values, with_values
+from jaxbacklash.parameters import ravel, specs, unravel, values
 from jaxbacklash.regression.drive_start import start_of_drive
-from jaxbacklash.regression.motor_form import MotorForm
 from jaxbacklash.solvers import run_panels
 from tests.independent.drives import DriveRig, commanded_record, followed, packed, random_rig, run_commanded
 
@@ -131,19 +130,6 @@ def test_a_limit_is_taken_where_the_record_shows_one(share):
     assert isinstance(motor, jb.LimitedServo) == (share > 0.0)
     if share:
         assert float(motor.tmax) == pytest.approx(limit / rig.motor_inertia, rel=0.2)
-
-
-@HERE
-def test_the_true_servo_leaves_nothing_at_its_motor():
-    rig = random_rig(np.random.default_rng(4))
-    form, names = MotorForm(recorded(rig, 4, 6.0)), ("inertia", "motor_inertia", "Kp", "Kd", "stiffness")
-    left, by = form.missing(servo(rig), names)
-    assert np.std(left) < 1e-2 * np.std(by[:, 2] * gains(rig)[0])
-    more = values(servo(rig))
-    for j, name in enumerate(names):
-        moved = with_values(servo(rig), {name: 1.001 * more[name]})
-        change = (form.missing(moved, names)[0] - left) / (0.001 * more[name])
-        np.testing.assert_allclose(by[:, j], -change, atol=1e-6 * np.abs(change).max() + 1e-12)
 
 
 @HERE
@@ -293,6 +279,13 @@ def test_command_and_torque_are_not_taken_for_each_other(written, tmp_path):
     told = call(["simulate", "rig.toml", "--excitation", "run.csv", "--rate", "500", "--out", "again.csv"], tmp_path)
     assert told.code == 2
     assert "with command, which does not drive this model; wanted the torque at the motor" in told.err
+
+
+@pytest.mark.parametrize("command", ["refine", "diagnose"])
+def test_what_a_command_is_not_taken_for(command, written, tmp_path):
+    told = call([command, str(written()), "--ratio", "50"], tmp_path)
+    assert told.code == 2
+    assert f"the command of a servo and no torque, which {command} does not take so far; wanted the motor's torque" in told.err
 
 
 def test_a_servo_is_not_exported():

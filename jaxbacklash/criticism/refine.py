@@ -24,6 +24,7 @@ from ..fitting.settings import EXPLAINED
 from ..fitting.setup import as_stiff_as_can_be, base_system, free_names
 from ..precision import require_double_precision
 from ..records import Record, oriented
+from ..records.both_encoders import require_torque
 from ..records.findings.wide_play import wide_play
 from ..records.force import tell_way
 from ..records.relative_motion import check_answers
@@ -93,6 +94,7 @@ def refine(
     (('gravity',), 'complete')
     """
     require_double_precision("refine")
+    require_torque(record, "refine")
     record = oriented(record)
     heldout = None if heldout is None else oriented(heldout)
     check_size([record] if heldout is None else [record, heldout])
@@ -109,7 +111,7 @@ def refine(
         names, model = free_names(system), "given"
     fitter = ModelFitter(record, system, names, window, beside=heldout)
     fitter.take_laws(laws_for(system, translational=translational))
-    per_inertia = inertia is None and (record.kind not in ABSOLUTE or record.input_name == "command") and model != "given"
+    per_inertia = inertia is None and record.kind not in ABSOLUTE and model != "given"
     judged = _Judge(fitter, heldout, model, per_inertia, translational, start)
     clock["prepare"] = time.perf_counter()
     search = EvidenceSearch(fitter, progress)

@@ -9,13 +9,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import jax
 import numpy as np
 
-from ..compiled import kept_jit
-from ..effects import Damper, Motor
+from ..effects.contact import Damper
 from ..mechanics import AbstractEffect
-from ..parameters import specs
 from ..records import Record
 from ..system import System
 from .along_motion import Motion, own_tangents, smooth, torques
@@ -24,8 +21,7 @@ from .weak_form import WeakForm, seeds_of
 
 
 class MotorForm(WeakForm):
-    """A drive with an encoder on motor and link, its balance at the motor averaged under bumps; a servo's torque is of its
-    command, and of the motion as it was measured.
+    """A drive with an encoder on motor and link, its balance at the motor averaged under bumps.
 
     Attributes: ``motion`` of the motor, as that of a link (y is its angle); ``link``, the motion of the link on its base.
     """
@@ -37,7 +33,7 @@ class MotorForm(WeakForm):
         self.motion = Motion(record.t, *smooth(record.t, angle), still, still, still)
         # By parts: the bump is even, so that its own first derivative takes the rate off with its sign changed.
         self.bend, self.speed = self.average(angle, 2), -self.average(angle, 1)
-        self.given = centred(record.channels[record.input_name or "torque"])
+        self.driven = self.average(centred(record.channels["torque"]))
 
     def missing(self, system: System, free: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
         """Missing torque at the motor under the bump (R,), and how it falls with each free parameter of the model (R, q)."""
@@ -48,12 +44,10 @@ class MotorForm(WeakForm):
         of_laws = tuple(n if "." in n else "" for n in free)  # not of the joint, which cancels
         on_link, by_load = torques(loads, seeds_of(loads, of_laws), self.link)
         at_motor, by_motor = self._own(system, free)
-        made, by_gains = (np.asarray(v) for v in _made(motor, self.given, self.motion.y, self.motion.dy))
-        left = float(motor.motor_inertia) * self.bend + float(motor.motor_damping) * self.speed - self.average(made)
+        left = float(motor.motor_inertia) * self.bend + float(motor.motor_damping) * self.speed - self.driven
         left = left + (inertia * self.acceleration - self.average(on_link)) / float(motor.ratio) - self.average(at_motor)
         by = self.average(by_load / float(motor.ratio) + by_motor)
-        told = dict(zip(specs(motor), self.average(by_gains)))
-        told |= {"motor_inertia": -self.bend, "motor_damping": -self.speed, "inertia": -self.acceleration / float(motor.ratio)}
+        told = {"motor_inertia": -self.bend, "motor_damping": -self.speed, "inertia": -self.acceleration / float(motor.ratio)}
         for j, name in enumerate(free):
             by[j] = told.get(name, by[j])
         return left, by.T
@@ -68,15 +62,3 @@ class MotorForm(WeakForm):
                 own: Any = own_tangents(law, system, seeds_of(law, mine), self.motion)
                 torque, columns = torque + own[0], columns + own[1]
         return torque, columns
-
-
-@kept_jit
-def _made(motor: Motor, given: Any, th: Any, dth: Any) -> tuple[Any, Any]:
-    """Torque that the motor makes along its motion (N,), and how it grows with each of its parameters (p, N)."""
-    leaves, kind = jax.tree.flatten(motor)
-
-    def of(numbers: Any) -> Any:
-        return jax.tree.unflatten(kind, list(numbers)).pushed(given, th, dth)
-
-    own = jax.numpy.stack([jax.numpy.asarray(leaf) for leaf in leaves])
-    return of(own), jax.jacfwd(of)(own).T

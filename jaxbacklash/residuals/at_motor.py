@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..effects import Servo
 from ..records import Record
 from ..regression.motor_form import MotorForm
 from ..shooting.torque_input import channel_noise, torque_noise
@@ -44,8 +43,8 @@ class AtMotor:
 
 
 def missing_at_motor(system: System, free: tuple[str, ...], record: Record) -> AtMotor | None:
-    """What is missing at the motor of a fitted drive, on average over a tenth of a second; None where there is no motor or one
-    side has no encoder.
+    """What is missing at the motor of a fitted drive, on average over a tenth of a second; None where there is no motor, or where
+    one side has no encoder or nothing measured the torque.
 
     Parameters
     ----------
@@ -60,7 +59,7 @@ def missing_at_motor(system: System, free: tuple[str, ...], record: Record) -> A
     At the motor a torque of 0.0543 N m rms is missing; 99 % of it goes with the direction in which the motor turns, ...
     """
     motor = system.motor
-    if motor is None or record.blind:
+    if motor is None or record.blind or record.input_name != "torque":
         return None
     form = MotorForm(record)
     left, by = form.missing(system, free)
@@ -72,7 +71,5 @@ def missing_at_motor(system: System, free: tuple[str, ...], record: Record) -> A
     whole = float(form.average(np.ones(record.samples))[0])
     of_link = float(system.inertia) / float(motor.ratio) * channel_noise(record, "link")
     of_motor = float(motor.motor_inertia) * channel_noise(record, "motor")
-    servo = isinstance(motor, Servo)  # its torque is as uncertain as the motor's place
-    made = float(motor.Kp) / record.ratio * channel_noise(record, "motor") if servo else torque_noise(record)
-    noise = np.hypot(made * form.loudness(0), np.hypot(of_link, of_motor) * form.loudness(2))
+    noise = np.hypot(torque_noise(record) * form.loudness(0), np.hypot(of_link, of_motor) * form.loudness(2))
     return AtMotor(float(np.sqrt(energy / rest.size)) / whole, float(noise) / whole, share)
