@@ -25,6 +25,7 @@ from .effects import LimitedServo as LimitedServo
 from .effects import LinearGravity as LinearGravity
 from .effects import Motor as Motor
 from .effects import Preload as Preload
+from .effects import SecondPlay as SecondPlay
 from .effects import Servo as Servo
 from .effects import Spring as Spring
 from .errors import BadInput as BadInput

@@ -14,7 +14,7 @@ import dataclasses
 import math
 import re
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import equinox as eqx
 import jax.numpy as jnp
@@ -38,6 +38,18 @@ class Drive(eqx.Module):
     dtorque: Scalar | None = None
 
 
+Kink = tuple[Scalar, Scalar, Scalar]
+"""A quantity, its rate and the rate of that, the number 0.0 where it does not matter."""
+
+
+class Region(NamedTuple):
+    """Where a step takes place: ``side`` of the play, -1, 0 or 1, and by name whether laws with a play of their own are
+    ``beyond`` it."""
+
+    side: Scalar
+    beyond: dict[str, Scalar]
+
+
 @dataclass(frozen=True)
 class Play:
     """The free play at one moment: its total size and the middle of it, both in rad."""
@@ -59,7 +71,8 @@ class Instant:
     ``damping`` of the joint's damper [N m s/rad]; ``rubbed``, what dry friction is now, as a multiple of what its laws state;
     ``dseen``, rate of the motion that is measured, z' or y' [rad/s]; ``side`` of the play, -1, 0 or 1, where a solver has
     settled it, None where it is the sign of the deflection; ``th``, ``dth`` motion of the motor of a drive [rad, rad/s], and
-    ``slip_th`` the direction in which it slides, as of the others.
+    ``slip_th`` the direction in which it slides, as of the others; ``beyond``, by the name of a law that ``plays`` whether of the
+    quantities of its `kink` one is above zero, where a solver has settled it.
     """
 
     t: Scalar
@@ -84,6 +97,7 @@ class Instant:
     th: Scalar = 0.0
     dth: Scalar = 0.0
     slip_th: Scalar | None = None
+    beyond: dict[str, Scalar] | None = None
 
     def seen_by(self, state: tuple[Scalar, ...]) -> Instant:
         """The same moment with one effect's internal states filled in."""
@@ -116,8 +130,9 @@ class AbstractEffect(eqx.Module):
     data often cannot tell apart; ``catalogued`` False keeps a law out of the search for missing effects; ``slides`` True for dry
     friction, whose torque is ``dry`` against the direction of sliding at its port; ``rings`` True where its states go on by
     themselves for long, linear in where they began; ``beside`` True for friction in the joint that stands beside another law of
-    it, where else there is one; ``absorbs`` names of simpler laws that this one contains, so that it takes their place instead of
-    standing beside them (parameters of one name are then the same); ``yields`` parameters that the presence of another effect
+    it, where else there is one; ``plays`` True where its kinks are the edges of a play of its own, met as often as those of
+    the joint; ``absorbs`` names of simpler laws that this one contains, so that it takes their place instead of standing beside
+    them (parameters of one name are then the same); ``yields`` parameters that the presence of another effect
     makes superfluous, and that effect's name: held beside it; ``motions`` of a link for which the law makes sense, ``"turning"``
     and ``"sliding"``; ``joints`` in which it does something that the joint does not do already, ``"play"``, ``"spring"`` and
     ``"free"``; ``alike`` names of laws for which it is taken, or they for it, each with what a record must hold to tell the two;
@@ -132,6 +147,7 @@ class AbstractEffect(eqx.Module):
     slides: ClassVar[bool] = False
     rings: ClassVar[bool] = False
     beside: ClassVar[bool] = False
+    plays: ClassVar[bool] = False
     absorbs: ClassVar[tuple[str, ...]] = ()
     yields: ClassVar[dict[str, str]] = {}
     motions: ClassVar[tuple[str, ...]] = ("turning", "sliding")
@@ -178,10 +194,12 @@ class AbstractEffect(eqx.Module):
         """Size, >= 0, of the dry friction against the speed seen by the port, at rest the most it can hold [N m]."""
         return jnp.zeros_like(now.y)
 
-    def kink(self, now: Instant, ddz: Scalar) -> tuple[Scalar, Scalar] | None:
-        """A quantity at whose zero the torque has a kink that no edge of the play makes, and its rate where the relative motion
-        is accelerated by ``ddz`` [rad/s^2]: steps end there. None where the law has no such kink."""
-        return None
+    def kink(self, now: Instant, ddz: Scalar, ddy: Scalar) -> tuple[Kink, ...]:
+        """Quantities at whose zeros the torque has a kink that no edge of the play makes: steps end there.
+
+        Each with its rate and the rate of that, where relative motion and link are accelerated by ``ddz`` and ``ddy`` [rad/s^2].
+        """
+        return ()
 
     def rate(self, now: Instant) -> tuple[Scalar, ...]:
         """Time derivatives of the internal states, in the order of ``states``."""

@@ -21,7 +21,7 @@ import jax.numpy as jnp
 from . import sensors as sensors  # where there is a system, the catalogue is whole: these, and the effects
 from .effects.contact import Contact, Damper, Spring, corner
 from .effects.motor import Motor
-from .mechanics import AbstractEffect, Drive, Instant, Play, canonical_name
+from .mechanics import AbstractEffect, Drive, Instant, Kink, Play, Region, canonical_name
 from .mechanics import catalogue as catalogue
 from .parameters import Scalar, param
 
@@ -126,8 +126,13 @@ class System(eqx.Module):
 
     @property
     def switches(self) -> bool:
-        """True when steps should be located: there is a play, or dry friction."""
-        return self.has_play or bool(self.slides)
+        """True when steps should be located: there is a play, or dry friction, or a law with a play of its own."""
+        return self.has_play or bool(self.slides) or bool(self.plays)
+
+    @property
+    def plays(self) -> tuple[str, ...]:
+        """Laws with a play of their own."""
+        return tuple(name for name, effect in sorted(self.effects.items()) if effect.plays)
 
     @property
     def play_moves(self) -> bool:
@@ -191,11 +196,13 @@ class System(eqx.Module):
         """Acceleration of the joint's base [rad/s^2] where the state changes by these ``rates``."""
         return prescribed if self.motor is None else rates[3] / self.motor.ratio
 
-    def kinks(self, t: Scalar, state: State, drive: Drive, side: Scalar | None, ddz: Scalar) -> list[tuple[Scalar, Scalar]]:
-        """Quantities at whose zero a law has a kink, and their rates with the relative motion accelerated by ``ddz``."""
+    def kinks(
+        self, t: Scalar, state: State, drive: Drive, side: Scalar | None, ddz: Scalar, ddy: Scalar
+    ) -> dict[str, tuple[Kink, ...]]:
+        """By law, quantities at whose zeros it has a kink, where relative motion and link are accelerated by ``ddz`` and ``ddy``
+        [rad/s^2]."""
         now = self.instant(t, state, drive, side)
-        found = (self.effects[name].kink(now.seen_by(own), ddz) for name, own in self._own_states(state))
-        return [kink for kink in found if kink is not None]
+        return {name: self.effects[name].kink(now.seen_by(own), ddz, ddy) for name, own in self._own_states(state)}
 
     def transmitted(self, t: Scalar, state: State, drive: Drive, side: Scalar | None = None) -> Scalar:
         """Torque the link exerts on its base through the joint [N m]."""
@@ -241,6 +248,7 @@ class System(eqx.Module):
         y, dy = state[0], state[1]
         x, dx = self.base(state, drive.x, drive.dx)
         z, dz = y - x, dy - dx
+        side, beyond = side if isinstance(side, Region) else (side, None)
         deflection, contact = self._deflection(t, z, x, side)
         stiffness = jnp.zeros_like(z) if self.contact is None else self.contact.stiffness
         drifted: Any = 1.0
@@ -249,7 +257,7 @@ class System(eqx.Module):
             drifted, rubbed = drifted * self.effects[name].drift(t), rubbed * self.effects[name].rubs(t)
         return Instant(
             t, y, dy, x, dx, z, dz, deflection, contact, stiffness, self.inertia, drifted=drifted,
-            damping=self.damper.damping, rubbed=rubbed, dseen=dy if self.observed == "y" else dz, side=side,
+            damping=self.damper.damping, rubbed=rubbed, dseen=dy if self.observed == "y" else dz, side=side, beyond=beyond,
             **({} if self.motor is None else {"th": state[2], "dth": state[3]}),
         )  # fmt: skip
 

@@ -34,13 +34,17 @@ LAWS = {
     "asymmetric_gap": {"z0": 0.001},
     "gap_spring": {"k1": 30.0},
     "load_friction": {"mu": 0.1},
+    "second_play": {"J2": 0.03, "k2": 900.0, "c2": 0.15, "b2": 0.006},
 }
+STATES = (2, 3, 0, 1, 4, 5)
+"""Columns of the other program's states that are y, dy, th, dth and those of a second link."""
 DRY = ("coulomb_motor", "coulomb_joint", "coulomb_ground", "load_friction")
-SMOOTH = tuple(name for name in LAWS if name not in DRY)
+SMOOTH = tuple(name for name in LAWS if name not in (*DRY, "second_play"))
 RATE, WINDOW, SECONDS, PARTS = 1000.0, 100, 3.0, 1000
 CASES = {
     "bare": (), "motor": DRY[:1], "joint": DRY[1:2], "ground": DRY[2:3], "motor-joint": DRY[:2], "three ports": DRY[:3],
-    "smooth laws": SMOOTH, "all laws": tuple(LAWS),
+    "smooth laws": SMOOTH, "all laws": tuple(LAWS), "second play": ("second_play",),
+    "second play-motor": ("second_play", *DRY[:1]),
 }  # fmt: skip
 
 
@@ -62,7 +66,7 @@ def push():
 
 
 def truth(names, push, parts=PARTS):
-    return run_held(packed(RIG, {name: LAWS[name] for name in names}), np.zeros(4), push, 1.0 / RATE, parts)
+    return run_held(packed(RIG, {name: LAWS[name] for name in names}), np.zeros(6), push, 1.0 / RATE, parts)
 
 
 @partial(jax.jit, static_argnames="finer")
@@ -76,7 +80,9 @@ def run(rig, states, push, finer):
     return jax.vmap(one)(states, push)
 
 
-@pytest.mark.parametrize("case", [c if c in ("bare", "motor") else pytest.param(c, marks=pytest.mark.slow) for c in CASES])
+@pytest.mark.parametrize(
+    "case", [c if c in ("bare", "motor", "second play") else pytest.param(c, marks=pytest.mark.slow) for c in CASES]
+)
 def test_windows_follow_the_other_program(case, push):
     """Windows of a tenth of a second, each begun from the true state: what is left is the steps' error, and the other's.
 
@@ -86,7 +92,7 @@ def test_windows_follow_the_other_program(case, push):
     states = truth(names, push)
     first = WINDOW * np.arange(push.size // WINDOW)
     grid = first[:, None] + np.arange(WINDOW)
-    begin = tuple(jnp.asarray(states[first, at]) for at in (2, 3, 0, 1))
+    begin = tuple(jnp.asarray(states[first, at]) for at in STATES[: 6 if "second_play" in names else 4])
     edges = np.append(push, push[-1])[first[:, None] + np.arange(WINDOW + 1)]
     found = np.asarray(run(system(names), begin, jnp.asarray(edges), 4 if len(set(names) & set(DRY)) > 1 else 1))
     error_y = np.abs(found[:, 0] - states[grid, 2])
@@ -122,23 +128,23 @@ def test_rates_in_parameters_and_state():
     """Derivatives of the equations of motion by every parameter and state, in the play and beyond either edge."""
     rig = system(tuple(LAWS))
     scale = np.maximum(np.abs(ravel(rig)), 1e-6)
-    keep = [i for i, spec in enumerate(specs(rig).values()) if not spec.fixed] + list(range(scale.size, scale.size + 4))
+    keep = [i for i, spec in enumerate(specs(rig).values()) if not spec.fixed] + list(range(scale.size, scale.size + 6))
 
     def rates(vector):
         found = unravel(rig, vector[: scale.size] * scale)
-        state = tuple(vector[scale.size + i] for i in range(4))
+        state = tuple(vector[scale.size + i] for i in range(6))
         return jnp.stack(found.rates(0.4, state, Drive(0.0, 0.0, 0.1, None, 0.05)))
 
     exact, values = jax.jit(jax.jacfwd(rates)), jax.jit(rates)
     for z, dz in ((0.002, 0.3), (0.009, -0.4), (-0.008, 0.5)):
         th, dth = 4.0, 20.0
-        at = np.concatenate([ravel(rig) / scale, [th / 50.0 + z, dth / 50.0 + dz, th, dth]])
+        at = np.concatenate([ravel(rig) / scale, [th / 50.0 + z, dth / 50.0 + dz, th, dth, th / 50.0 - 1.5 * z, 0.1]])
         difference = central(lambda v: np.asarray(values(v)), at)
         error = np.abs(np.asarray(exact(at)) - difference)[:, keep]
         assert np.max(error / (np.abs(difference[:, keep]).max(axis=1, keepdims=True) + 1e-3)) < 1e-6
 
 
-@pytest.mark.parametrize(("case", "most"), [("smooth laws", 1e-4), ("motor", 2e-3)])
+@pytest.mark.parametrize(("case", "most"), [("smooth laws", 1e-4), ("motor", 2e-3), ("second play", 1e-4)])
 def test_derivatives_across_contacts(case, most, push):
     """Derivatives of the motion by every parameter, through contacts and stops of the motor, against differences."""
     rig = system(CASES[case])
@@ -149,7 +155,7 @@ def test_derivatives_across_contacts(case, most, push):
     first = max(range(0, push.size - 200, 50), key=lambda k: min(z[k : k + 200].max(), -z[k : k + 200].min()))
     held = jnp.asarray(push[first : first + 201])
     zero = jnp.zeros_like(held)
-    begin = tuple(jnp.asarray(states[first, at]) for at in (2, 3, 0, 1))
+    begin = tuple(jnp.asarray(states[first, at]) for at in STATES[: len(rig.state_names)])
 
     @jax.jit
     def motion(values):

@@ -140,6 +140,7 @@ GROUPS = {
     ),
     "hidden states": ("dahl", "flexible_link", "stribeck"),
     "hysteresis": ("lugre", "bouc_wen"),
+    "plays": ("second_play",),
 }
 
 

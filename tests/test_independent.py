@@ -163,7 +163,7 @@ def plain_law(name, q, t, z, w, y, v, delta, s):
 
 def plain_simulation(name, q, excitation, t_out):
     """z (n,) [rad] of the joint with one law, from a stiff solver that knows nothing of switches."""
-    flexible = name == "flexible_link"
+    flexible = name in ("flexible_link", "second_play")
     J2, k2, c2 = (q["J2"], q["k2"], q["c2"]) if flexible else (1.0, 0.0, 0.0)
 
     def rate(t, u):
@@ -174,7 +174,7 @@ def plain_simulation(name, q, excitation, t_out):
         k = K * (1 + (q["r"] * t if name == "stiffness_drift" else 0.0))
         delta = dead_zone(z - (q["z0"] if name == "asymmetric_gap" else 0.0), play)
         torque, ds = plain_law(name, q, t, z, w, y, v, delta, s)
-        link = k2 * (y - y2) + c2 * (v - v2)
+        link = k2 * dead_zone(y - y2, q.get("b2", 0.0)) + c2 * (v - v2)
         return [v, (torque - link - k * delta - C * w) / J, ds, v2, link / J2]
 
     out = solve_ivp(rate, (0, t_out[-1]), [0.0] * 5, "LSODA", t_out, rtol=1e-9, atol=1e-11, max_step=1e-3)
@@ -182,7 +182,9 @@ def plain_simulation(name, q, excitation, t_out):
 
 
 @needs_numba
-@pytest.mark.parametrize("name", [name for name in STRENGTHS | OUTSIDE_STRENGTHS if not name.startswith("sensor")])
+@pytest.mark.parametrize(
+    "name", [name for name in (*STRENGTHS, *OUTSIDE_STRENGTHS, "second_play") if not name.startswith("sensor")]
+)
 def test_every_law_of_the_generator_is_the_one_in_the_table(name):
     rng = np.random.default_rng(3)
     excitation, effects = make_excitation(rng, "multisine"), make_effects(rng, name)

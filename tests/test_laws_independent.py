@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from jaxbacklash import simulate
-from jaxbacklash.effects import CoulombGround, CoulombJoint, FlexibleLink
+from jaxbacklash.effects import CoulombGround, CoulombJoint, FlexibleLink, SecondPlay
 from jaxbacklash.excitation import Harmonic
 from jaxbacklash.fitting.fit import prepare
 from jaxbacklash.fitting.setup import make_problem
@@ -36,6 +36,7 @@ pytestmark = pytest.mark.skipif(importlib.util.find_spec("numba") is None, reaso
 RIG = Rig(3.2, 0.024, 12000.0, 20.0)
 PANEL, LENGTH = 0.002, 50
 HIDDEN = {"dahl": (4, "Fc"), "lugre": (5, "Fc"), "bouc_wen": (6, "Fc")}  # column of the kernel's state, unit of ours
+SECOND = ("flexible_link", "second_play")
 DRY = ("coulomb_joint", "coulomb_ground", "stribeck", "load_friction")
 EVERY = LAWS | FORMS
 
@@ -67,7 +68,7 @@ def own_states(system, states):
     """The true states as the system has them: y, dy, and each law's own, shape (n,) each."""
     found = [states[:, 0], states[:, 1]]
     for name in sorted(system.effects):
-        if name == "flexible_link":
+        if name in SECOND:
             found += [states[:, 2], states[:, 3]]
         elif name == "relaxation":
             found.append(states[:, 7] / float(system.effects[name].kr * system.effects[name].tau_r))
@@ -87,14 +88,14 @@ def run(system, t0, state, edges):
     return jax.vmap(one)(t0, state, edges)
 
 
-def window_errors(names, motion, duration=20.0):
-    """Absolute errors of z at all panel edges of all windows [rad]."""
+def window_errors(names, motion, duration=20.0, length=LENGTH):
+    """Absolute errors of z at all panel edges of all windows, of ``length`` panels each [rad]."""
     t, states, x, dx = truth(names, motion, duration)
     system = base_motion_joint(RIG.inertia, RIG.backlash, RIG.stiffness, RIG.damping)
     system = system.with_effects(*(EVERY[name] for name in names))
-    count = (t.size - 1) // LENGTH
-    first = LENGTH * np.arange(count)
-    grid = first[:, None] + np.arange(LENGTH + 1)
+    count = (t.size - 1) // length
+    first = length * np.arange(count)
+    grid = first[:, None] + np.arange(length + 1)
     start = tuple(jnp.asarray(s[first]) for s in own_states(system, states))
     edges = Drive(jnp.asarray(x[grid]), jnp.asarray(dx[grid]), jnp.zeros(grid.shape))
     return np.abs(np.asarray(run(system, jnp.asarray(t[first]), start, edges)) - states[grid, 0])
@@ -103,6 +104,7 @@ def window_errors(names, motion, duration=20.0):
 CASES = [((name,), motion) for motion in MOTIONS for name in DRY]
 CASES += [(("coulomb_joint", "coulomb_ground"), motion) for motion in MOTIONS]
 CASES += [((*names, "friction_drift"), "multisine") for names in (("coulomb_joint",), ("coulomb_ground",), ("dahl",))]
+CASES += [((*dry, "second_play"), "multisine") for dry in (DRY[:1], DRY[:2])]
 CASES += [((name,), "multisine") for name in EVERY if canonical_name(EVERY[name]) in _COLUMNS and name not in DRY]
 
 
@@ -113,7 +115,17 @@ def test_windows_follow_the_generator(names, motion):
     assert np.quantile(error, 0.99) < 3e-6
 
 
-TOGETHER = tuple(n for n in LAWS if n in _COLUMNS and n not in (*DRY, *HIDDEN, "flexible_link", "relaxation"))
+def test_two_seconds_of_a_second_play_follow_the_generator():
+    """Five stretches of 2 s in panels of a fit, each with dozens of contacts of the second link."""
+    states = truth(("second_play",), MOTIONS["multisine"](), 10.0)[1]
+    outside = np.abs(states[:, 2] - states[:, 0]) > 0.5 * float(LAWS["second_play"].b2)
+    assert np.count_nonzero(np.diff(outside.astype(int)) > 0) > 100
+    error = window_errors(("second_play",), MOTIONS["multisine"](), 10.0, length=1000)
+    assert np.median(error) < 1e-6
+    assert np.max(error) < 1e-4
+
+
+TOGETHER = tuple(n for n in LAWS if n in _COLUMNS and n not in (*DRY, *HIDDEN, *SECOND, "relaxation"))
 """Laws without friction and internal states: what one makes of the joint, the others must see."""
 
 
@@ -180,7 +192,7 @@ def test_friction_of_no_strength_is_none_and_its_derivative_is_right(name):
 def null_value(law):
     """The law with its strengths at null and shapes as in the table; a flexible link vanishes with its spring."""
     gone = {name: spec.null for name, spec in specs(law).items() if spec.null is not None}
-    if isinstance(law, FlexibleLink):
+    if isinstance(law, (FlexibleLink, SecondPlay)):
         gone |= {"k2": 0.0, "c2": 0.0}
     return with_values(law, gone)
 

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from jaxbacklash.effects import Contact, Damper, FlexibleLink, Lugre, Spring, Stribeck, TorqueRipple
+from jaxbacklash.effects import Contact, Damper, FlexibleLink, Lugre, SecondPlay, Spring, Stribeck, TorqueRipple
 from jaxbacklash.effects.scales import FURTHEST, LABORATORY, natural_frequency
 from jaxbacklash.system import System
 from tests.independent.rigs import Rig
@@ -31,6 +31,8 @@ def test_guesses_grow_with_a_joint(scale):
         grown = scale.values({"flexible_link": {n: getattr(one, n) for n in ("J2", "k2", "c2")}})["flexible_link"]
         assert {n: getattr(other, n) for n in grown} == pytest.approx(grown, rel=1e-12)
     motion, grown = moving(), moving(scale.angle, scale.time)
+    plays = [[g.b2 for g in SecondPlay.guesses(s, m)] for s, m in ((here, motion), (there, grown))]
+    assert plays[1] == pytest.approx([b * scale.angle for b in plays[0]], rel=1e-12)
     for law in (Stribeck, Lugre):
         speeds = [[g.vs for g in law.guesses(s, m)] for s, m in ((here, motion), (there, grown))]
         assert speeds[1] == pytest.approx([v * scale.angle / scale.time for v in speeds[0]], rel=1e-12)

@@ -30,7 +30,7 @@ GROUPS = {
     "Damping of the contact": ("contact_damping", "hunt_crossley", "relaxation"),
     "Dry friction": ("coulomb_joint", "coulomb_ground", "stribeck", "load_friction"),
     "Friction that gives before it slips": ("dahl", "lugre", "bouc_wen"),
-    "Structure": ("flexible_link",),
+    "Structure": ("flexible_link", "second_play"),
     "The motor of a drive": ("coulomb_motor", "cogging"),
     "The measuring chain": ("sensor_delay", "clock_drift", "sensor_filter", "sensor_gain", "sensor_offset"),
     "A law from data": ("learned_torque",),

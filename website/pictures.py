@@ -58,8 +58,9 @@ VIEWS = {
     "coulomb_ground": View("dy", 4.0, 3.0), "coulomb_joint": View("dz"), "cubic_stiffness": View(swing=1.8), "dahl": View("dz"),
     "flexible_link": View("y", 4.0, 1.0), "gap_drift": View("t"),
     "gravity": View("y", 4.0), "hunt_crossley": View("dz", 1.4), "linear_gravity": View("y", 4.0),
-    "lugre": View("dz"), "preload": View("y", 4.0), "quadratic_drag": View("dy", 4.0, 3.0), "sensor_delay": View("dz", 1.2),
-    "sensor_gain": View(swing=1.4), "stiffness_drift": View("t", 1.4), "stribeck": View("dz"), "torque_ripple": View("y", 6.0),
+    "lugre": View("dz"), "preload": View("y", 4.0), "quadratic_drag": View("dy", 4.0, 3.0), "second_play": View("y", 4.0, 1.0),
+    "sensor_delay": View("dz", 1.2), "sensor_gain": View(swing=1.4), "stiffness_drift": View("t", 1.4), "stribeck": View("dz"),
+    "torque_ripple": View("y", 6.0),
 }  # fmt: skip
 BESIDE = {"friction_drift": {"coulomb_joint": LAWS["coulomb_joint"]}}
 """Laws without which one does nothing."""

@@ -48,8 +48,8 @@ EFFECTS = (
     "asymmetric_gap, asymmetric_stiffness, bouc_wen, clock_drift, cogging, contact_damping, contact_exponent, "
     "coulomb_ground, coulomb_joint, coulomb_motor, cubic_stiffness, dahl, damping_drift, disturbance, flexible_link, "
     "friction_drift, gap_drift, gap_spring, gravity, hunt_crossley, learned_torque, linear_gravity, load_friction, lugre, "
-    "preload, quadratic_drag, relaxation, sensor_delay, sensor_filter, sensor_gain, sensor_offset, stiffness_drift, "
-    "stribeck, torque_ripple, transmission_error"
+    "preload, quadratic_drag, relaxation, second_play, sensor_delay, sensor_filter, sensor_gain, sensor_offset, "
+    "stiffness_drift, stribeck, torque_ripple, transmission_error"
 )
 """What ``jaxbacklash.catalogue()`` lists, for a help that waits for no library; a test compares the two."""
 MODELS = "joint (play, contact stiffness, damping), linear (a spring without play), free (damping alone), or a file FILE.toml"

@@ -39,3 +39,4 @@ from .stiffness import CubicStiffness as CubicStiffness
 from .stiffness import GapSpring as GapSpring
 from .stiffness import TransmissionError as TransmissionError
 from .structure import FlexibleLink as FlexibleLink
+from .structure import SecondPlay as SecondPlay

@@ -6,7 +6,7 @@ from typing import ClassVar
 
 import jax.numpy as jnp
 
-from ..mechanics import AbstractEffect, Instant
+from ..mechanics import AbstractEffect, Instant, Kink
 from ..parameters import Scalar, param
 
 
@@ -36,10 +36,10 @@ class ContactDamping(AbstractEffect):
     def forms(self) -> list[AbstractEffect]:
         return [ContactDamping(self.cc, 1.0 - self.pulls)]
 
-    def kink(self, now: Instant, ddz: Scalar) -> tuple[Scalar, Scalar]:
+    def kink(self, now: Instant, ddz: Scalar, ddy: Scalar) -> tuple[Kink, ...]:
         k = now.stiffness * now.drifted
         lets_go = now.contact * (self.pulls < 0.5)
-        return lets_go * (k * now.deflection + self.cc * now.dz), k * now.dz + self.cc * ddz
+        return ((lets_go * (k * now.deflection + self.cc * now.dz), k * now.dz + self.cc * ddz, 0.0),)
 
 
 class HuntCrossley(AbstractEffect):
@@ -59,9 +59,9 @@ class HuntCrossley(AbstractEffect):
     def forms(self) -> list[AbstractEffect]:
         return [HuntCrossley(self.chi, 1.0 - self.pulls)]
 
-    def kink(self, now: Instant, ddz: Scalar) -> tuple[Scalar, Scalar]:
+    def kink(self, now: Instant, ddz: Scalar, ddy: Scalar) -> tuple[Kink, ...]:
         outwards, lets_go = self.chi * jnp.sign(now.deflection), now.contact * (self.pulls < 0.5)
-        return lets_go * (now.stiffness * now.drifted + outwards * now.dz), outwards * ddz
+        return ((lets_go * (now.stiffness * now.drifted + outwards * now.dz), outwards * ddz, 0.0),)
 
 
 class QuadraticDrag(AbstractEffect):

@@ -35,6 +35,12 @@ def sliding_speeds(motion: Any | None) -> tuple[float, ...]:
     return tuple(share * (typical if typical > 0.0 else 1.0) for share in (0.1, 0.03, 0.3))
 
 
+def swing(motion: Any | None) -> float:
+    """A typical size of the link's motion [rad]: its standard deviation in a record."""
+    typical = 0.1 if motion is None else float(np.std(motion.y))
+    return typical if typical > 0.0 else 0.1
+
+
 def pressed(system: Any, motion: Any | None) -> float:
     """A round length near which a contact is pressed in [rad]: by a record's motion, else as much as half the play."""
     half = 0.5 * float(system.contact.backlash) if system.has_play else 0.0

@@ -7,13 +7,16 @@ from typing import Any, ClassVar
 import jax.numpy as jnp
 import numpy as np
 
-from ..mechanics import AbstractEffect, Instant
+from ..mechanics import AbstractEffect, Instant, Kink, canonical_name
 from ..parameters import Scalar, param
-from .scales import natural_frequency
+from .scales import natural_frequency, swing
 
 LOWEST, HIGHEST, STEPS = 0.5, 7.0, 16
 """Frequencies at which something behind the link may swing, in units of the link's own in contact, which a fit without it may
 have taken for the upper one of two: below that it swings with the joint as one, far above it is one with the link."""
+COARSER, PLAYS = 3, (0.05, 0.2)
+"""Every how many of these frequencies begin behind a second play, whose contact sets no frequency of its own; and its sizes, as
+shares of the root mean square of the link's motion: larger ones are hardly crossed."""
 
 
 class FlexibleLink(AbstractEffect):
@@ -47,6 +50,53 @@ class FlexibleLink(AbstractEffect):
     def rate(self, now: Instant) -> tuple[Scalar, ...]:
         _, dy2 = now.state
         return dy2, -self.torque(now) / jnp.maximum(self.J2, 1e-9)
+
+    def start(self, now: Instant) -> tuple[Scalar, ...]:
+        return now.y, now.dy
+
+
+class SecondPlay(AbstractEffect):
+    r"""A second link behind a joint with play of its own, :math:`J_2 \ddot y_2 = -T`.
+
+    :math:`T = k_2\,\delta(y_2 - y) + c_2 (\dot y_2 - \dot y)` with the dead zone :math:`\delta` of the TOTAL play :math:`b_2`,
+    around :math:`y_2 = y`: the damper always acts, as in the first joint. The states are those of `FlexibleLink`, which this is
+    at :math:`b_2 = 0`.
+    """
+
+    J2: Scalar = param(unit="kg m^2", null=0.0, lower=0.0, scale=0.1)
+    k2: Scalar = param(unit="N m/rad", default=0.0, lower=0.0, scale=1000.0)
+    c2: Scalar = param(unit="N m s/rad", default=0.0, lower=0.0, scale=1.0)
+    b2: Scalar = param(unit="rad", default=0.0, lower=0.0, scale=0.01, label="total play of the second joint")
+    states: ClassVar[tuple[str, ...]] = ("y2", "dy2")
+    port: ClassVar[str] = "ground"
+    plays: ClassVar[bool] = True
+    absorbs: ClassVar[tuple[str, ...]] = ("flexible_link",)
+    alike: ClassVar[dict[str, str]] = {
+        "flexible_link": "swings of several sizes: a play shows less of itself the larger they are"
+    }
+
+    @classmethod
+    def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
+        typical = swing(motion)
+        links = FlexibleLink.guesses(system, motion)[::COARSER]
+        return [cls(own.J2, own.k2, own.c2, share * typical) for own in links for share in PLAYS]
+
+    def scaled(self, factor: float) -> SecondPlay:
+        return SecondPlay(factor * self.J2, factor * self.k2, factor * self.c2, self.b2)
+
+    def torque(self, now: Instant) -> Scalar:
+        y2, dy2 = now.state
+        behind, half = y2 - now.y, 0.5 * self.b2
+        beyond = jnp.abs(behind) > half if now.beyond is None else now.beyond[canonical_name(self)]
+        return self.k2 * jnp.where(beyond, behind - jnp.sign(behind) * half, 0.0) + self.c2 * (dy2 - now.dy)
+
+    def kink(self, now: Instant, ddz: Scalar, ddy: Scalar) -> tuple[Kink, ...]:
+        (y2, dy2), (_, ddy2) = now.state, self.rate(now)
+        behind, half = (y2 - now.y, dy2 - now.dy, ddy2 - ddy), 0.5 * self.b2
+        return (behind[0] - half, *behind[1:]), (-behind[0] - half, -behind[1], -behind[2])
+
+    def rate(self, now: Instant) -> tuple[Scalar, ...]:
+        return now.state[1], -self.torque(now) / jnp.maximum(self.J2, 1e-9)
 
     def start(self, now: Instant) -> tuple[Scalar, ...]:
         return now.y, now.dy

@@ -16,7 +16,8 @@ from typing import Any, NamedTuple, Protocol
 import jax
 import jax.numpy as jnp
 
-from .panels import SHARES, WEIGHTS, Cubic, Edges, Playing, Scalar, State, _add, _first_kink
+from ..mechanics import Kink
+from .panels import AGAIN, SHARES, WEIGHTS, Cubic, Edges, Playing, Scalar, State, _add, _first_kink, lasts, settled
 
 SOON = 1e-4
 """Share of a panel within which an event counts as met: a fraction of a microsecond."""
@@ -33,7 +34,12 @@ class Sliding(Playing, Protocol):
     @property
     def has_play(self) -> bool: ...
 
-    def kinks(self, t: Scalar, state: State, drive: Any, side: Scalar | None, ddz: Scalar) -> list[tuple[Scalar, Scalar]]: ...
+    def kinks(
+        self, t: Scalar, state: State, drive: Any, side: Scalar | None, ddz: Scalar, ddy: Scalar
+    ) -> dict[str, tuple[Kink, ...]]: ...
+
+    @property
+    def plays(self) -> tuple[str, ...]: ...
 
     def base(self, state: State, x: Scalar, dx: Scalar) -> tuple[Scalar, Scalar]: ...
 
@@ -109,6 +115,7 @@ def advance_dry(system: Sliding, t: Scalar, state: State, drive_at: Any, base: C
     """Advance the state over one panel; the arguments are those of `panels.advance`."""
     edges = Edges.over(system, t, base, h) if system.has_play else None
     soon = SOON * h
+    least = AGAIN * h if system.plays else 0.0
     # On a base at rest both frictions oppose one speed and are one.
     resting = (base.b == 0.0) & (base.c == 0.0) & (base.d == 0.0)
 
@@ -125,6 +132,8 @@ def advance_dry(system: Sliding, t: Scalar, state: State, drive_at: Any, base: C
         state, begin, met, side = carry
         rest = h - begin
         z, dz = state[0] - base.at(begin), state[1] - base.slope(begin)
+        if system.plays and side is not None:  # the side was that of all that is left
+            side = jnp.where(last, side, region(z + least * dz, begin + least))
         first, start = see(begin, state, side)
         mode = _mode(system.slides, start, dz, state[1], met, soon)
         dy = jnp.where(mode.held_z, base.slope(begin), jnp.where(mode.held_y, 0.0, state[1]))
@@ -132,19 +141,21 @@ def advance_dry(system: Sliding, t: Scalar, state: State, drive_at: Any, base: C
         state = (state[0], dy, *state[2:])
         acceleration = mode.acceleration(start)
         ddz = acceleration - start.base
-        kink = _first_kink(system.kinks(t + begin, state, drive_at(begin), side, ddz), rest)
-        edge = rest if edges is None else edges.first_crossing(begin, z, dz, ddz, rest)
+        kinks = system.kinks(t + begin, state, drive_at(begin), side, ddz, acceleration)
+        kink = _first_kink(kinks, rest, least)
+        edge = rest if edges is None else edges.first_crossing(begin, z, dz, ddz, rest, least)
         event, met = _first_event(system.slides, (dz, dy), (ddz, acceleration), jnp.minimum(edge, kink), rest, soon)
         step, met = jnp.where(last, rest, event), tuple(m & ~last for m in met)
+        half = 0.5 * step
         if side is not None:
-            half = 0.5 * step
             side = jnp.where(last, side, region(z + half * (dz + 0.5 * half * ddz), begin + half))
+        here = settled(system, side, kinks, half)
 
         def stage(carry: Any, at: Any) -> Any:
             slope, total, _ = carry
             share, weight = at
             tried = _add(state, slope, share * step)
-            rates, moment = see(begin + share * step, tried, side)
+            rates, moment = see(begin + share * step, tried, here)
             slope = (tried[1], mode.acceleration(moment), *rates[2:])
             return (slope, _add(total, slope, weight), moment), None
 
@@ -161,7 +172,7 @@ def advance_dry(system: Sliding, t: Scalar, state: State, drive_at: Any, base: C
     no = jnp.zeros_like(state[0], dtype=bool)
     # Loops, here and over the stages, not copies: with many laws the compiler makes ten times the work of their derivative.
     begun: Any = (state, jnp.zeros_like(state[0]), (no, no), region(state[0] - base.a, 0.0))
-    (state, *_), _ = jax.lax.scan(piece, begun, jnp.array([False, True]))
+    (state, *_), _ = jax.lax.scan(piece, begun, lasts(system))
     return state
 
 

@@ -25,7 +25,7 @@ import jax
 import jax.numpy as jnp
 
 from .dry import SOON, STILL
-from .panels import SHARES, WEIGHTS, Cubic, Edges, Scalar, State, Switching, _add, _first_kink, base_ahead
+from .panels import AGAIN, SHARES, WEIGHTS, Cubic, Edges, Scalar, State, Switching, _add, _first_kink, base_ahead, lasts, settled
 
 
 class Sliding(Switching, Protocol):
@@ -151,6 +151,7 @@ def _least_action(ports: Ports, free: Sequence[Scalar], most: Sequence[Scalar]) 
 def advance_ports(system: Sliding, t: Scalar, state: State, drive_at: Any, base: Cubic, h: Scalar) -> State:
     """Advance the state over one panel; the arguments are those of `panels.advance`."""
     soon = SOON * h
+    least = AGAIN * h if system.plays else 0.0
     names = system.slides
     ports = Ports(tuple(system.rows[name] for name in names), system.mobility)
     count = len(ports.mobility)
@@ -182,6 +183,9 @@ def advance_ports(system: Sliding, t: Scalar, state: State, drive_at: Any, base:
     def piece(carry: Any, last: Any) -> Any:
         state, begin, met, side = carry
         rest = h - begin
+        if system.plays and side is not None:  # the side was that of all that is left
+            z, dz = relative(state, begin)
+            side = jnp.where(last, side, region(z + least * dz, begin + least))
         rates, free, capacity = see(begin, state, side)
         speeds = [state[2 * i + 1] for i in range(count)]
         mode = _mode(ports, free, capacity, [ports.felt(p, speeds) for p in range(len(names))], met, soon)
@@ -189,20 +193,22 @@ def advance_ports(system: Sliding, t: Scalar, state: State, drive_at: Any, base:
         state = with_speeds(state, speeds)
         found = mode.accelerations(ports, free, capacity)
         (z, dz), ddz = relative(state, begin), across(found, begin)
-        kink = _first_kink(system.kinks(t + begin, state, drive_at(begin), side, ddz), rest)
+        kinks = system.kinks(t + begin, state, drive_at(begin), side, ddz, found[0])
+        kink = _first_kink(kinks, rest, least)
         at_ports = [(ports.felt(p, speeds), ports.felt(p, found)) for p in range(len(names))]
-        edge = rest if edges is None else edges.first_crossing(begin, z, dz, ddz, rest)
+        edge = rest if edges is None else edges.first_crossing(begin, z, dz, ddz, rest, least)
         event, met = _first_event(at_ports, mode, jnp.minimum(edge, kink), rest, soon)
         step, met = jnp.where(last, rest, event), tuple(m & ~last for m in met)
+        half = 0.5 * step
         if side is not None:
-            half = 0.5 * step
             side = jnp.where(last, side, region(z + half * (dz + 0.5 * half * ddz), begin + half))
+        here = settled(system, side, kinks, half)
 
         def stage(carry: Any, at: Any) -> Any:
             slope, total, *_ = carry
             share, weight = at
             tried = _add(state, slope, share * step)
-            rates, free, capacity = see(begin + share * step, tried, side)
+            rates, free, capacity = see(begin + share * step, tried, here)
             slope = slopes(tried, mode.accelerations(ports, free, capacity), rates)
             return (slope, _add(total, slope, weight), free, capacity), None
 
@@ -218,7 +224,7 @@ def advance_ports(system: Sliding, t: Scalar, state: State, drive_at: Any, base:
 
     no = jnp.zeros_like(state[0], dtype=bool)
     begun: Any = (state, jnp.zeros_like(state[0]), tuple(no for _ in names), region(relative(state, 0.0)[0], 0.0))
-    (state, *_), _ = jax.lax.scan(piece, begun, jnp.array([False, True]))
+    (state, *_), _ = jax.lax.scan(piece, begun, lasts(system))
     return state
 
 

@@ -1,7 +1,8 @@
 r"""A panel: a short step over which the drive is a cubic, split where the link meets an edge of the play.
 
 Between switches the law is smooth, so fourth-order Runge-Kutta keeps its order if no step straddles a switch. Each
-panel is two steps; when the link crosses an edge inside the panel, the two meet there, else they meet in the middle.
+panel is two steps; when the link crosses an edge inside the panel, the two meet there, else they meet in the middle. A second
+play (a law that ``plays``) has edges of its own, and a third step for them.
 The crossing is predicted from :math:`z, \dot z, \ddot z` at the start of the panel, against edges that may move. A miss by
 :math:`\epsilon` in time costs :math:`k v \epsilon^2 / 2J` in speed, since the law of the region is carried on over the miss;
 :math:`\epsilon` is of third order in the step, so the whole stays of fourth order for laws that are continuous at the edge.
@@ -9,12 +10,18 @@ The crossing is predicted from :math:`z, \dot z, \ddot z` at the start of the pa
 
 from __future__ import annotations
 
+import functools
+import itertools
 from typing import Any, NamedTuple, Protocol
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 
+from ..mechanics import Kink, Region
+
+AGAIN = 5e-3
+"""Share of a panel within which an event is one with that at which the last step has ended: the prediction may miss by that."""
 Scalar = Any
 State = tuple[Scalar, ...]
 SHARES, WEIGHTS = np.array([0.5, 0.5, 1.0]), np.array([2.0, 2.0, 1.0])
@@ -68,9 +75,17 @@ class Playing(Protocol):
 class Switching(Playing, Protocol):
     """What a panel needs of a system: its rates in a known region, and where the regions end."""
 
+    @property
+    def has_play(self) -> bool: ...
+
     def rates(self, t: Scalar, state: State, drive: Any, side: Scalar | None = None) -> State: ...
 
-    def kinks(self, t: Scalar, state: State, drive: Any, side: Scalar | None, ddz: Scalar) -> list[tuple[Scalar, Scalar]]: ...
+    def kinks(
+        self, t: Scalar, state: State, drive: Any, side: Scalar | None, ddz: Scalar, ddy: Scalar
+    ) -> dict[str, tuple[Kink, ...]]: ...
+
+    @property
+    def plays(self) -> tuple[str, ...]: ...
 
     def base(self, state: State, x: Scalar, dx: Scalar) -> tuple[Scalar, Scalar]: ...
 
@@ -103,8 +118,8 @@ def rk4_in_turns(rates: Any, t: Scalar, state: State, h: Scalar, first: State) -
     return _add(state, total, h / 6.0)
 
 
-def _first_crossing(gap: Scalar, speed: Scalar, acceleration: Scalar, h: Scalar) -> Scalar:
-    """First time in (0, h) at which ``gap + speed t + acceleration t^2 / 2`` is zero, or ``h`` if it never is."""
+def _first_crossing(gap: Scalar, speed: Scalar, acceleration: Scalar, h: Scalar, least: Scalar = 0.0) -> Scalar:
+    """First time in (least, h) at which ``gap + speed t + acceleration t^2 / 2`` is zero, or ``h`` if it never is."""
     square = speed**2 - 2.0 * acceleration * gap
     # The square root of a guarded value keeps derivatives finite in lanes without a crossing.
     root = jnp.sqrt(jnp.where(square > 0.0, square, 1.0))
@@ -112,7 +127,7 @@ def _first_crossing(gap: Scalar, speed: Scalar, acceleration: Scalar, h: Scalar)
     for denominator in (-speed + root, -speed - root):
         safe = jnp.where(jnp.abs(denominator) > 1e-30, denominator, 1.0)
         time = 2.0 * gap / safe
-        valid = (square > 0.0) & (time > 0.0) & (time < h) & (jnp.abs(denominator) > 1e-30)
+        valid = (square > 0.0) & (time > least) & (time < h) & (jnp.abs(denominator) > 1e-30)
         best = jnp.where(valid & (time < best), time, best)
     return best
 
@@ -138,11 +153,11 @@ class Edges(NamedTuple):
         (low, *_), (high, *_) = (_moved(edge, tau) for edge in self)
         return jnp.where(z > high, 1.0, jnp.where(z < low, -1.0, 0.0))
 
-    def first_crossing(self, tau: Scalar, z: Scalar, dz: Scalar, ddz: Scalar, rest: Scalar) -> Scalar:
-        """Time from ``tau`` on to the first meeting with an edge, or ``rest`` if there is none before."""
+    def first_crossing(self, tau: Scalar, z: Scalar, dz: Scalar, ddz: Scalar, rest: Scalar, least: Scalar = 0.0) -> Scalar:
+        """Time from ``tau`` on, ``least`` at least, to the first meeting with an edge, or ``rest`` if there is none before."""
         ahead = []
         for place, speed, half in (_moved(edge, tau) for edge in self):
-            ahead.append(_first_crossing(z - place, dz - speed, ddz - 2.0 * half, rest))
+            ahead.append(_first_crossing(z - place, dz - speed, ddz - 2.0 * half, rest, least))
         return jnp.minimum(*ahead)
 
 
@@ -165,13 +180,34 @@ def base_ahead(system: Switching, state: State, base: Cubic) -> Cubic:
     return base if x is base.a else Cubic(x, dx, 0.0 * x, 0.0 * x)
 
 
-def _first_kink(kinks: list[tuple[Scalar, Scalar]], h: Scalar) -> Scalar:
-    """First time in (0, h) at which one of some quantities with these values and rates is zero, or ``h`` if none ever is."""
+def _first_kink(kinks: dict[str, tuple[Kink, ...]], h: Scalar, least: Scalar = 0.0) -> Scalar:
+    """First time in (least, h) at which one of some quantities with these values, rates and rates of those is zero, or ``h`` if
+    none ever is."""
     best = h
-    for value, rate in kinks:
-        ahead = value * rate < 0.0
+    for kink in itertools.chain.from_iterable(kinks.values()):
+        value, rate, bend = kink
+        if not isinstance(bend, float):
+            best = jnp.minimum(best, _first_crossing(*kink, h, least))
+            continue
+        ahead = value * rate < 0.0  # a number that is no array says that the rate stays as it is
         best = jnp.minimum(best, jnp.where(ahead, -value / jnp.where(ahead, rate, 1.0), h))
     return best
+
+
+def lasts(system: Switching) -> Scalar:
+    """For each step of a panel whether it is the last: of two, and of one more for each law with a play of its own."""
+    steps = 2 + len(system.plays)
+    return jnp.arange(steps) == steps - 1
+
+
+def settled(system: Switching, side: Any, kinks: dict[str, tuple[Kink, ...]], half: Scalar) -> Any:
+    """The region of a step, by where it is after ``half`` of it: the ``side`` of the play, and with it those of laws that have
+    one of their own."""
+    beyond = {}
+    for name in system.plays:
+        ahead = [value + half * (rate + 0.5 * half * bend) for value, rate, bend in kinks[name]]
+        beyond[name] = functools.reduce(jnp.maximum, ahead) > 0.0
+    return Region(side, beyond) if beyond else side
 
 
 def advance(system: Switching, t: Scalar, state: State, drive_at: Any, base: Cubic, h: Scalar) -> State:
@@ -194,7 +230,7 @@ def advance(system: Switching, t: Scalar, state: State, drive_at: Any, base: Cub
     ddz = first[1] - system.bend(first, 2.0 * base.c)
 
     crossing = edges.first_crossing(0.0, z, dz, ddz, h)
-    crossing = jnp.minimum(crossing, _first_kink(system.kinks(t, state, drive_at(0.0), side, ddz), h))
+    crossing = jnp.minimum(crossing, _first_kink(system.kinks(t, state, drive_at(0.0), side, ddz, first[1]), h))
     split = jnp.where(crossing < h, crossing, 0.5 * h)
 
     half = 0.5 * split
@@ -210,31 +246,41 @@ def advance(system: Switching, t: Scalar, state: State, drive_at: Any, base: Cub
 
 
 def advance_in_turns(system: Switching, t: Scalar, state: State, drive_at: Any, base: Cubic, h: Scalar) -> State:
-    """As `advance`, in loops over the two steps and their stages: slower where the laws are few, and where they are many with
-    internal states among them the compiler, for which every stage is as much work as all laws, takes half as long."""
-    edges = Edges.over(system, t, base_ahead(system, state, base), h)
+    """As `advance`, in loops over the two steps, or more with plays of laws, and their stages: slower where the laws are few, and
+    where they are many with internal states among them the compiler, for which every stage is as much work as all laws, takes
+    half as long."""
+    edges = Edges.over(system, t, base_ahead(system, state, base), h) if system.has_play else None
+    least = AGAIN * h if system.plays else 0.0  # an event where a step begins is that at which the last one ended
 
     def relative(state: State, tau: Scalar) -> tuple[Scalar, Scalar]:
         x, dx = system.base(state, base.at(tau), base.slope(tau))
         return state[0] - x, state[1] - dx
 
+    def side_of(z: Scalar, at: Scalar) -> Any:
+        return None if edges is None else edges.side(z, at)
+
     def step(carry: Any, last: Any) -> Any:
         state, begin, side = carry
-        rest = h - begin
+        rest, (z, dz) = h - begin, relative(state, begin)
+        if system.plays and edges is not None:  # the side was that of all that is left
+            side = jnp.where(last, side, edges.side(z + least * dz, begin + least))
         first = system.rates(t + begin, state, drive_at(begin), side)
-        (z, dz), ddz = relative(state, begin), first[1] - system.bend(first, base.bend(begin))
-        crossing = edges.first_crossing(begin, z, dz, ddz, rest)
-        crossing = jnp.minimum(crossing, _first_kink(system.kinks(t + begin, state, drive_at(begin), side, ddz), rest))
+        ddz = first[1] - system.bend(first, base.bend(begin))
+        crossing = rest if edges is None else edges.first_crossing(begin, z, dz, ddz, rest, least)
+        kinks = system.kinks(t + begin, state, drive_at(begin), side, ddz, first[1])
+        crossing = jnp.minimum(crossing, _first_kink(kinks, rest, least))
         length = jnp.where(last, rest, jnp.where(crossing < rest, crossing, 0.5 * rest))
         half = 0.5 * length
-        side = jnp.where(last, side, edges.side(z + half * (dz + 0.5 * half * ddz), begin + half))
-        state = rk4_in_turns(lambda s, q: system.rates(t + s, q, drive_at(s), side), begin, state, length, first)
+        if edges is not None:
+            side = jnp.where(last, side, edges.side(z + half * (dz + 0.5 * half * ddz), begin + half))
+        region = settled(system, side, kinks, half)
+        state = rk4_in_turns(lambda s, q: system.rates(t + s, q, drive_at(s), region), begin, state, length, first)
         begin = begin + length
         (z, dz), half = relative(state, begin), 0.5 * (h - begin)
-        return (state, begin, edges.side(z + half * (dz + 0.5 * half * ddz), begin + half)), None
+        return (state, begin, side_of(z + half * (dz + 0.5 * half * ddz), begin + half)), None
 
-    begun: Any = (state, jnp.zeros_like(state[0]), edges.side(relative(state, 0.0)[0], 0.0))
-    (state, *_), _ = jax.lax.scan(step, begun, jnp.array([False, True]))
+    begun: Any = (state, jnp.zeros_like(state[0]), side_of(relative(state, 0.0)[0], 0.0))
+    (state, *_), _ = jax.lax.scan(step, begun, lasts(system))
     return state
 
 

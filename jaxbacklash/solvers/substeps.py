@@ -35,7 +35,7 @@ def course(a: Any, b: Any, h: Any) -> tuple[Any, Cubic]:
 def one_panel(system: Any, t: Any, state: Any, a: Any, b: Any, h: Any, located: bool) -> Any:
     """The state one panel of length ``h`` [s] after ``t``, the drive given as ``a`` and ``b`` at the panel's two edges."""
     drive_at, base = course(a, b, h)
-    in_turns = len(state) > system.mechanical and len(system.effects) > MANY
+    in_turns = (len(state) > system.mechanical and len(system.effects) > MANY) or bool(system.plays)
     if located and system.slides:
         dry = advance_dry if system.motor is None else advance_ports
         return dry(system, t, state, drive_at, base, h)

@@ -1,4 +1,5 @@
-r"""Drives by a program that shares nothing with the package: motor, gear, joint with play, link, dry friction at three ports.
+r"""Drives by a program that shares nothing with the package: motor, gear, joint with play, link, dry friction at three ports, and
+a second link behind a play of its own.
 
 Time stepping after Moreau and Jean: with a step of a microsecond or two the smooth torques are taken in the middle of the step
 and friction is an impulse that is found together with the speed at its end, which makes sticking exact and needs no events.
@@ -16,8 +17,8 @@ from tests.independent.kernel import njit
 # Columns of the parameter vector; zero is the null value of every law.
 (
     JM, CM, RATIO, J, B, K, C, TC_MOTOR, COG, COG_P, COG_PHI, TC_JOINT, TC_GROUND, G, PHI0, T0, RIPPLE, RIPPLE_N, RIPPLE_PHI,
-    TE, TE_M, TE_PSI, K3, CC, DRAG, Z0, K1, MU, FAN, RUB, SIZE,
-) = range(31)  # fmt: skip
+    TE, TE_M, TE_PSI, K3, CC, DRAG, Z0, K1, MU, FAN, RUB, J2, K2, C2, B2, SIZE,
+) = range(35)  # fmt: skip
 
 COLUMNS = {
     "coulomb_motor": {"Tc": TC_MOTOR},
@@ -34,6 +35,7 @@ COLUMNS = {
     "asymmetric_gap": {"z0": Z0},
     "gap_spring": {"k1": K1},
     "load_friction": {"mu": MU},
+    "second_play": {"J2": J2, "k2": K2, "c2": C2, "b2": B2},
 }
 OUTSIDE = {"motor_fan": {"q": FAN}, "swing_damping": {"c": RUB}}
 """No laws of the catalogue: drag of the motor with the square of its speed, and damping of the link that grows with the square of
@@ -74,6 +76,14 @@ def packed(rig: DriveRig, effects: dict[str, dict[str, float]]) -> np.ndarray:
         for key, value in given.items():
             p[(COLUMNS | OUTSIDE)[name][key]] = value
     return p
+
+
+@njit(cache=True)
+def _behind(p, y, dy, y2, dy2):
+    """Torque that a second link takes from the first [N m]."""
+    off, half = y2 - y, 0.5 * p[B2]
+    press = off - half if off > half else off + half if off < -half else 0.0
+    return p[K2] * press + p[C2] * (dy2 - dy)
 
 
 @njit(cache=True)
@@ -121,10 +131,17 @@ def _stopped(p, v, most):
 
 @njit(cache=True)
 def _step(p, q, tau, h, before):
-    """One step of length h: q is th, dth, y, dy, changed in place; ``before`` the accelerations of the last step, likewise."""
-    th, dth, y, dy = q
-    middle = _torques(p, th + 0.5 * h * dth, dth + 0.5 * h * before[0], y + 0.5 * h * dy, dy + 0.5 * h * before[1], tau)
-    free = np.array([dth + h * middle[0] / p[JM], dy + h * middle[1] / p[J]])
+    """One step of length h: q is th, dth, y, dy, y2, dy2, changed in place; ``before`` the accelerations of the last step,
+    likewise."""
+    th, dth, y, dy, y2, dy2 = q
+    half = 0.5 * h
+    middle = _torques(p, th + half * dth, dth + half * before[0], y + half * dy, dy + half * before[1], tau)
+    pull = 0.0
+    if p[J2] > 0.0:
+        pull = _behind(p, y + half * dy, dy + half * before[1], y2 + half * dy2, dy2 + half * before[2])
+        before[2] = -pull / p[J2]
+        q[4], q[5] = y2 + h * (dy2 + half * before[2]), dy2 + h * before[2]
+    free = np.array([dth + h * middle[0] / p[JM], dy + h * (middle[1] + pull) / p[J]])
     most = np.array([h * p[TC_MOTOR], h * p[TC_GROUND], h * (p[TC_JOINT] + p[MU] * middle[2])])
     new_th, new_y = free
     if most[0] + most[1] + most[2] > 0.0:
@@ -136,9 +153,10 @@ def _step(p, q, tau, h, before):
 
 @njit(cache=True)
 def run_held(p, start, torque, dt, parts):
-    """States (N, 4): th, dth, y, dy at the samples, under torques (N,) held for ``dt``, ``parts`` steps each."""
-    q, before = start.copy(), np.zeros(2)
-    out = np.empty((torque.size, 4))
+    """States (N, 6): th, dth, y, dy, and those of a second link, at the samples, under torques (N,) held for ``dt``, ``parts``
+    steps each; ``start`` (6,)."""
+    q, before = start.copy(), np.zeros(3)
+    out = np.empty((torque.size, 6))
     for i in range(torque.size):
         out[i] = q
         for _ in range(parts):
@@ -148,9 +166,9 @@ def run_held(p, start, torque, dt, parts):
 
 @njit(cache=True)
 def run_servo(p, wanted, rate_wanted, gains, most, count, dt, parts):
-    """A servo on a counting encoder: states (N, 4) and the torque (N,) it holds for each sample; it follows (N,) and its rate."""
-    q, before = np.zeros(4), np.zeros(2)
-    out, torque = np.empty((wanted.size, 4)), np.empty(wanted.size)
+    """A servo on a counting encoder: states (N, 6) and the torque (N,) it holds for each sample; it follows (N,) and its rate."""
+    q, before = np.zeros(6), np.zeros(3)
+    out, torque = np.empty((wanted.size, 6)), np.empty(wanted.size)
     seen, speed = 0.0, 0.0
     for i in range(wanted.size):
         out[i] = q

@@ -45,6 +45,7 @@ _COLUMNS = {
     },
     "bouc_wen": {"sigma": kernel.W_SIGMA, "Fc": kernel.W_FC, "n": kernel.W_N, "beta": kernel.W_BETA},
     "flexible_link": {"J2": kernel.J2, "k2": kernel.K2, "c2": kernel.C2},
+    "second_play": {"J2": kernel.J2, "k2": kernel.K2, "c2": kernel.C2, "b2": kernel.B2},
     "gap_drift": {"r": kernel.GAP_RATE},
     "stiffness_drift": {"r": kernel.K_RATE},
     "transmission_error": {"e": kernel.ERROR, "M": kernel.ERROR_M, "psi": kernel.ERROR_PSI},

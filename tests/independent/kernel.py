@@ -1,10 +1,10 @@
 """The fast non-smooth stepper behind `generator.py`: event-located RK4 in numba, friction set-valued.
 
 The state is (y, v, y2, v2, s_dahl, s_lugre, s_bouc_wen, s_relaxation, z behind a low-pass). A step is taken along one
-smooth branch, which three modes name: contact (-1, 0 inside the play, +1), the sign of z' and the sign of y' (0: it
-sticks). If a step leaves its branch, bisection finds where; the modes are decided anew there and the rest of the step
-follows. Sticking is exact:
-the velocity is held until the torque needed exceeds what friction can give. At zero velocity the modes are the one
+smooth branch, which four modes name: contact (-1, 0 inside the play, +1), the sign of z' and the sign of y' (0: it
+sticks), and the contact of a second link behind a play of its own. If a step leaves its branch, bisection finds where; the
+modes are decided anew there and the rest of the step follows. Sticking is exact: the velocity is held until the torque needed
+exceeds what friction can give. At zero velocity the modes are the one
 solution of
 
     J a + F_joint Sgn(a - x'') + F_ground Sgn(a)  contains  R,
@@ -38,8 +38,8 @@ except ImportError:  # the fast generator is for development only
     D_SIGMA, D_FC, L_S0, L_S1, L_S2, L_FC, L_FS, L_VS, W_SIGMA, W_FC, W_N, W_BETA, J2, K2, C2, GAP_RATE, K_RATE,
     DIST, DIST_W, DIST_PHI, SPEED_K, PHI0, ERROR, ERROR_M, ERROR_PSI, MU, KR, TAU_R, POWER, POWER_D0, C_RATE, DRY_RATE,
     CC_PULLS, CHI_PULLS, FILTER, PULSE, PULSE_W, STOP_K, STOP_AT, DETENT, DETENT_W, RUMBLE, STEP, STEP_T, ONE_WAY, FILM, FILM_H,
-    SIZE,
-) = range(70)  # fmt: skip
+    B2, SIZE,
+) = range(71)  # fmt: skip
 STATES = 9
 RUMBLING = 2.0 * np.pi * np.array([3.1, 4.7, 7.3, 11.2, 16.9])
 """Angular frequencies of a rumble [rad/s], of which none is a multiple of another."""
@@ -108,6 +108,15 @@ def _slip_friction(t, z, w, x, contact, p):
 
 
 @njit(cache=True)
+def _stretched(s, modes, p):
+    """How far the second link's spring is stretched [rad], the link seen from the first one."""
+    behind = s[2] - s[0]
+    if p[B2] == 0.0:
+        return behind
+    return 0.0 if modes[3] == 0 else behind - modes[3] * p[B2] / 2
+
+
+@njit(cache=True)
 def _torque(t, s, p, modes, x, dx, force, rate):
     """All torque on the link but set-valued friction [N m]; writes the rates of the hysteresis states into `rate`."""
     y, v = s[0], s[1]
@@ -141,7 +150,7 @@ def _torque(t, s, p, modes, x, dx, force, rate):
     if p[DIST] != 0.0:
         total += p[DIST] * np.sin(p[DIST_W] * t + p[DIST_PHI])
     if p[K2] != 0.0:
-        total -= p[K2] * (y - s[2]) + p[C2] * (v - s[3])
+        total += p[K2] * _stretched(s, modes, p) + p[C2] * (s[3] - v)
     if p[D_SIGMA] != 0.0:
         rate[4] = p[D_SIGMA] * (w - speed * s[4] / p[D_FC])
         total -= s[4] * _dry(t, p)
@@ -177,7 +186,7 @@ def _rates(t, s, p, modes, base, push, grid, rate):
         rate[1] = (total - at_joint - modes[2] * (p[TG] * _dry(t, p))) / p[J]
     if p[K2] != 0.0:
         rate[2] = s[3]
-        rate[3] = (p[K2] * (s[0] - s[2]) + p[C2] * (s[1] - s[3])) / p[J2]
+        rate[3] = -(p[K2] * _stretched(s, modes, p) + p[C2] * (s[3] - s[1])) / p[J2]
 
 
 @njit(cache=True)
@@ -199,7 +208,7 @@ def _rk4(t, s, h, p, modes, base, push, grid, work, out):
 
 @njit(cache=True)
 def _left(t, s, p, modes, base, push, grid, scratch, out):
-    """Which of the three modes no longer hold at (t, s), into out (3,); returns whether any."""
+    """Which of the four modes no longer hold at (t, s), into out (4,); returns whether any."""
     x, dx, ddx = _path(t, base, grid)
     force = _path(t, push, grid)[0]
     e, w = s[0] - x - _middle(x, p), s[1] - dx
@@ -214,7 +223,9 @@ def _left(t, s, p, modes, base, push, grid, scratch, out):
     if modes[2] == 0:
         total = _torque(t, s, p, modes, x, dx, force, scratch)
         out[2] = np.abs(total - modes[1] * _slip_friction(t, s[0] - x, w, x, modes[0], p)) > p[TG] * _dry(t, p)
-    return out[0] or out[1] or out[2]
+    behind = s[2] - s[0]
+    out[3] = p[B2] != 0.0 and (np.abs(behind) > p[B2] / 2 if modes[3] == 0 else modes[3] * behind < p[B2] / 2)
+    return out[0] or out[1] or out[2] or out[3]
 
 
 @njit(cache=True)
@@ -257,6 +268,8 @@ def _decide(t, s, p, modes, left, base, push, grid, scratch):
         x = _path(t, base, grid)[0]
         e = s[0] - x - _middle(x, p)
         modes[0] = (1 if e > 0 else -1) if modes[0] == 0 else 0
+    if left[3]:
+        modes[3] = (1 if s[2] > s[0] else -1) if modes[3] == 0 else 0
     if left[1] or left[2]:
         joint_zero, ground_zero = left[1] or modes[1] == 0, left[2] or modes[2] == 0
         _decide_friction(t, s, p, modes, base, push, grid, scratch, joint_zero, ground_zero)
@@ -271,11 +284,13 @@ def run(start, t_out, step, p, base, push, grid):
     """
     states, contact = np.empty((t_out.size, STATES)), np.empty(t_out.size, np.int64)
     work, scratch, trial, s = np.zeros((5, STATES)), np.zeros(STATES), np.zeros(STATES), start.copy()
-    modes, left = np.zeros(3, np.int64), np.zeros(3, np.bool_)
+    modes, left = np.zeros(4, np.int64), np.zeros(4, np.bool_)
     x, dx, _ = _path(0.0, base, grid)
     e = s[0] - x - _middle(x, p)
     if np.abs(e) > p[B] / 2:
         modes[0] = 1 if e > 0 else -1
+    if np.abs(s[2] - s[0]) > p[B2] / 2:
+        modes[3] = 1 if s[2] > s[0] else -1
     modes[1], modes[2] = np.int64(np.sign(s[1] - dx)), np.int64(np.sign(s[1]))
     _decide_friction(0.0, s, p, modes, base, push, grid, scratch, modes[1] == 0, modes[2] == 0)
     t = 0.0

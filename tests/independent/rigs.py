@@ -45,6 +45,7 @@ RIG_STRENGTHS = {
     "gravity:off": {"G": (15.0, 45.0), "phi0": (0.2, 1.2)},
     "transmission_error": {"e": (5e-4, 2e-3), "M": (15.0, 80.0), "psi": (-np.pi, np.pi)},
     "load_friction": {"mu": (0.05, 0.2)},
+    "second_play": {"J2": (0.4, 0.8), "k2": (12000.0, 24000.0), "c2": (2.0, 6.0), "b2": (0.004, 0.016)},
     "relaxation": {"kr": (600.0, 3000.0), "tau_r": (0.02, 0.2)},
     "contact_exponent": {"p": (1.15, 1.8), "d0": (0.005, 0.005)},
     "damping_drift": {"r": (0.015, 0.05)},

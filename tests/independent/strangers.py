@@ -47,6 +47,7 @@ UNITS = {
     "damping_drift": {"r": _RATE},
     "friction_drift": {"r": _RATE},
     "disturbance": {"A": _TORQUE, "omega": _RATE, "phi": _ONE},
+    "second_play": {"J2": (1, 0, 0), "k2": _STIFFNESS, "c2": _DAMPING, "b2": _ANGLE},
     "sensor_filter": {"tau_f": (0, 0, 1)},
     "clock_drift": {"r": _ONE},
     "unknown_disturbance": {"A": _TORQUE, "w": _RATE, "phi": _ONE},
@@ -55,7 +56,7 @@ UNITS = {
 # name -> the parameters that are its size; the others are its shape
 _SIZES = {
     "stribeck": ("Tc", "Ts"), "dahl": ("sigma", "Fc"), "lugre": ("sigma0", "sigma1", "Fc", "Fs"), "bouc_wen": ("sigma", "Fc"),
-    "flexible_link": ("J2", "k2", "c2"), "relaxation": ("kr",),
+    "flexible_link": ("J2", "k2", "c2"), "second_play": ("J2", "k2", "c2"), "relaxation": ("kr",),
 }  # fmt: skip
 _ONE_IS_NONE = {"sensor_gain": "g", "contact_exponent": "p"}
 RUBBING = ("coulomb_joint", "stribeck", "dahl", "lugre", "bouc_wen")
