@@ -14,8 +14,8 @@ from .scales import natural_frequency, swing
 LOWEST, HIGHEST, STEPS = 0.5, 7.0, 16
 """Frequencies at which something behind the link may swing, in units of the link's own in contact, which a fit without it may
 have taken for the upper one of two: below that it swings with the joint as one, far above it is one with the link."""
-COARSER, PLAYS = 3, (0.05, 0.2)
-"""Every how many of these frequencies begin behind a second play, whose contact sets no frequency of its own; and its sizes, as
+BEHIND, PLAYS = (2.0, 1.0, 4.0), (0.05, 0.2)
+"""The same for a link behind a second play, whose contact sets no one frequency, the likeliest first; and sizes of that play, as
 shares of the root mean square of the link's motion: larger ones are hardly crossed."""
 
 
@@ -60,7 +60,8 @@ class SecondPlay(AbstractEffect):
 
     :math:`T = k_2\,\delta(y_2 - y) + c_2 (\dot y_2 - \dot y)` with the dead zone :math:`\delta` of the TOTAL play :math:`b_2`,
     around :math:`y_2 = y`: the damper always acts, as in the first joint. The states are those of `FlexibleLink`, which this is
-    at :math:`b_2 = 0`.
+    at :math:`b_2 = 0`. It is no law that `refine` looks for: the search tells laws that remember by following them along the
+    measured motion, and a link that is thrown between two edges is soon elsewhere.
     """
 
     J2: Scalar = param(unit="kg m^2", null=0.0, lower=0.0, scale=0.1)
@@ -69,6 +70,7 @@ class SecondPlay(AbstractEffect):
     b2: Scalar = param(unit="rad", default=0.0, lower=0.0, scale=0.01, label="total play of the second joint")
     states: ClassVar[tuple[str, ...]] = ("y2", "dy2")
     port: ClassVar[str] = "ground"
+    catalogued: ClassVar[bool] = False
     plays: ClassVar[bool] = True
     absorbs: ClassVar[tuple[str, ...]] = ("flexible_link",)
     alike: ClassVar[dict[str, str]] = {
@@ -77,9 +79,9 @@ class SecondPlay(AbstractEffect):
 
     @classmethod
     def guesses(cls, system: Any, motion: Any | None = None) -> list[AbstractEffect]:
-        typical = swing(motion)
-        links = FlexibleLink.guesses(system, motion)[::COARSER]
-        return [cls(own.J2, own.k2, own.c2, share * typical) for own in links for share in PLAYS]
+        small, own, typical = 0.1 * float(system.inertia), natural_frequency(system), swing(motion)
+        speeds = [own * ratio for ratio in BEHIND]
+        return [cls(small, small * w * w, 0.1 * small * w, share * typical) for w in speeds for share in PLAYS]
 
     def scaled(self, factor: float) -> SecondPlay:
         return SecondPlay(factor * self.J2, factor * self.k2, factor * self.c2, self.b2)
