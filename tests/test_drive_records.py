@@ -128,7 +128,6 @@ def test_look_tells_a_drive_and_its_gear(written, tmp_path):
         ((), "torque and both encoders: it tells inertia and friction of the motor"),
         (("link",), "does not tell friction of the motor from that of the joint"),
         (("motor",), "ten to a hundred times less sharply"),
-        (("torque",), "nothing of the motor"),
     ],
 )
 def test_what_columns_tell_is_said_before_a_fit(written, without, words):

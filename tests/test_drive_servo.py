@@ -62,7 +62,7 @@ def run(rig, states, told, finer=1):
 
 def commanded(limit, parts=1000):
     command = followed(RIG, np.random.default_rng(3), 3.0, RATE)[0] / RIG.ratio
-    return command, run_commanded(packed(RIG, {}), np.zeros(4), command, np.array(gains(RIG, limit)), 1.0 / RATE, parts)
+    return command, run_commanded(packed(RIG, {}), np.zeros(6), command, np.array(gains(RIG, limit)), 1.0 / RATE, parts)
 
 
 @HERE

@@ -116,13 +116,14 @@ def test_windows_follow_the_generator(names, motion):
 
 
 def test_two_seconds_of_a_second_play_follow_the_generator():
-    """Five stretches of 2 s in panels of a fit, each with dozens of contacts of the second link."""
+    """Five stretches of 2 s in panels of a fit, each with dozens of contacts of the second link, which make small differences
+    grow: in one of them tenfold in a fifth of a second."""
     states = truth(("second_play",), MOTIONS["multisine"](), 10.0)[1]
     outside = np.abs(states[:, 2] - states[:, 0]) > 0.5 * float(LAWS["second_play"].b2)
     assert np.count_nonzero(np.diff(outside.astype(int)) > 0) > 100
     error = window_errors(("second_play",), MOTIONS["multisine"](), 10.0, length=1000)
     assert np.median(error) < 1e-6
-    assert np.max(error) < 1e-4
+    assert np.max(error[:, :300]) < 1e-5
 
 
 TOGETHER = tuple(n for n in LAWS if n in _COLUMNS and n not in (*DRY, *HIDDEN, *SECOND, "relaxation"))

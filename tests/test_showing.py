@@ -148,7 +148,8 @@ def test_every_result_of_a_public_function_is_among_them():
     without = {name for name in results if "_repr_html_" not in dir(getattr(jb, name))}
     effects = {cls.__name__ for cls in (jb.AbstractEffect, *jb.catalogue().values(), jb.LearnedTorque, jb.LinearGravity)}
     drives = {"Chirp", "Harmonic", "HeldTorque", "MotorTorque", "Multisine", "Rest", "Sampled", "SteppedSine"}
-    assert without <= effects | drives | {"Contact", "Damper", "Motor", "Spring", "BadInput", "NoAnswer", "Ranked", "Estimate"}
+    parts = {"Contact", "Damper", "LimitedServo", "Motor", "Servo", "Spring"}
+    assert without <= effects | drives | parts | {"BadInput", "NoAnswer", "Ranked", "Estimate"}
     assert results - without <= shown
 
 

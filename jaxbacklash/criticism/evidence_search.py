@@ -165,13 +165,13 @@ class EvidenceSearch:
             yield without_law(self.fitter, model, name)
 
     def another_law(self, model: FittedModel) -> Iterator[Neighbour]:
-        """The model with each of its laws replaced by the most promising others, and by all promising ones of its kin."""
+        """The model with each of its laws replaced by the most promising others, and by all promising ones related to it."""
         for name in sorted(model.names):
             # Fitted when it was looked at whether fewer laws do.
             without = self.fitter.fitted[model.names - {name}]
             screened = self.screened(without)
             enough = max((net_gain(c, self.fitter) for c in screened if c.name == name), default=0.0)
-            others = self._with_each(without, screened, self._kin(name), enough if leaves_noise(model) else 0.0)
+            others = self._with_each(without, screened, self._related(name), enough if leaves_noise(model) else 0.0)
             yield from (with_others_of(self.fitter, model, n) for n in others if n.names != model.names)
 
     def _in_other_forms(self, model: FittedModel, name: str) -> Iterator[Neighbour]:
@@ -181,18 +181,18 @@ class EvidenceSearch:
             self._formed.add((name, model.names, self.fitter.fitted[model.names].criterion))
 
     def _with_each(
-        self, model: FittedModel, candidates: list[Candidate], kin: frozenset[str] = frozenset(), enough: float = 0.0
+        self, model: FittedModel, candidates: list[Candidate], related: frozenset[str] = frozenset(), enough: float = 0.0
     ) -> Iterator[Neighbour]:
         """The model with each of the most promising candidates in turn, and with all that were fitted before; of each family with
-        one candidate, and with all that are ``kin``.
+        one candidate, and with all that are ``related``.
 
-        One that promises clearly less than one that leaves nothing is not fitted, unless it is kin to it, which a linear promise
-        hardly tells apart; that one may be known, and ``enough`` what it promised.
+        One that promises clearly less than one that leaves nothing is not fitted, unless it is related to it: a linear promise
+        hardly tells such apart. That one may be known, and ``enough`` what it promised.
         """
         beside = {c.name: with_law(self.fitter, model, c) for c in candidates}
         yield from (n for n in beside.values() if n.names in self.fitter.fitted)
-        for candidate in self._promising(model, candidates, beside, kin):
-            if net_gain(candidate, self.fitter) < CLOSE * enough and candidate.name not in kin:
+        for candidate in self._promising(model, candidates, beside, related):
+            if net_gain(candidate, self.fitter) < CLOSE * enough and candidate.name not in related:
                 continue
             yield beside[candidate.name]
             fitted = self.fitter.fitted[beside[candidate.name].names]
@@ -216,7 +216,7 @@ class EvidenceSearch:
         return {tuple(sorted(m.names)): m for m in others if self.evidence(model, m) > -self.demand}
 
     def _promising(
-        self, model: FittedModel, candidates: list[Candidate], beside: dict[str, Neighbour], kin: frozenset[str]
+        self, model: FittedModel, candidates: list[Candidate], beside: dict[str, Neighbour], related: frozenset[str]
     ) -> list[Candidate]:
         """Candidates not fitted yet that promise a share of what the best does; what has not kept its promise is left out."""
         known = {c.name: self.fitter.fitted.get(beside[c.name].names) for c in candidates}
@@ -225,10 +225,10 @@ class EvidenceSearch:
         new = [c for c in asked if known[c.name] is None and net_gain(c, self.fitter) >= least]
         # Of laws that records often cannot tell apart the most promising goes first.
         first = {self._family(c.name): c for c in reversed(new)}
-        kept = [c for c in new if c.name in kin or first[self._family(c.name)] is c]
+        kept = [c for c in new if c.name in related or first[self._family(c.name)] is c]
         return kept[:MOST_FITTED]
 
-    def _kin(self, name: str) -> frozenset[str]:
+    def _related(self, name: str) -> frozenset[str]:
         """Laws of the same family, and those that contain this one."""
         laws = self.fitter.laws
         return frozenset(n for n in laws if self._family(n) == self._family(name) or name in self.fitter.contained(n))

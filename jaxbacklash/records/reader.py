@@ -158,7 +158,7 @@ def record_of(table: Table, options: ReadOptions, where: str) -> Record:
     gear = gear if {"torque", "command"} & set(channels) else {}
     record = Record(t, channels, where, extras, _confirmed(picked, options), tuple(findings), **gear)
     undriven(record, table, picked, options)
-    for sentence in tells(channels, geared=options.ratio is not None):
+    for sentence in tells(channels):
         warnings.warn(f"{where}: {sentence}", UserWarning, stacklevel=3)
     return record
 

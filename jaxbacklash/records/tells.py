@@ -23,30 +23,23 @@ _COMMAND = (
     "a command in the place of a torque: the servo's gains, friction, inertia of the link, stiffness and damping are told per "
     "unit of the motor's inertia, the play as it is; no torque of a known size is in the record"
 )
-_MOTION = (
-    "motor and link without a torque: it tells the play, and stiffness and damping per unit of the link's inertia unless "
-    "--inertia gives it; nothing of the motor"
-)
 
 
-def tells(channels: Collection[str], *, geared: bool) -> list[str]:
+def tells(channels: Collection[str]) -> list[str]:
     """What the columns of a drive tell, one sentence; none of a record that is no drive's.
 
     Parameters
     ----------
     channels : names of a record's channels
-    geared : whether a gear's ratio is known, which makes base and link of a record of base motion a motor and its link
 
     Examples
     --------
-    >>> tells(["x", "z"], geared=False)
+    >>> tells(["x", "z"])
     []
-    >>> tells(["x", "y"], geared=True)[0]
-    'motor and link without a torque: it tells the play, and stiffness and damping per unit ...'
+    >>> tells(["torque", "motor", "link"])[0][:25]
+    'torque and both encoders:'
     """
     own = frozenset(channels)
     if "command" in own:
         return [_COMMAND]
-    if geared and own == {"x", "y"}:
-        return [_MOTION]
     return [_TOLD[own]] if own in _TOLD else []

@@ -210,10 +210,10 @@ def servo_record(
 
 @njit(cache=True)
 def run_commanded(p, start, command, servo, dt, parts):
-    """States (N, 4) at the samples of a drive whose torque is ``servo`` = (Kp, Kd, tmax): Kp (command - th / N) - Kd th', within
+    """States (N, 6) at the samples of a drive whose torque is ``servo`` = (Kp, Kd, tmax): Kp (command - th / N) - Kd th', within
     +-tmax, at every step, of a command (N,) held for ``dt`` [rad]."""
-    q, before = start.copy(), np.zeros(2)
-    out = np.empty((command.size, 4))
+    q, before = start.copy(), np.zeros(3)
+    out = np.empty((command.size, 6))
     h = dt / parts
     for i in range(command.size):
         out[i] = q
@@ -230,6 +230,6 @@ def commanded_record(
 ) -> dict[str, np.ndarray]:  # fmt: skip
     """A record of a servo that only logs what it was told: t, command [rad, at the link], motor and link in whole counts."""
     command = followed(rig, rng, duration, rate)[0] / rig.ratio
-    states = run_commanded(packed(rig, effects), np.zeros(4), command, np.array(servo), 1.0 / rate, parts)
+    states = run_commanded(packed(rig, effects), np.zeros(6), command, np.array(servo), 1.0 / rate, parts)
     motor, link = (np.round(states[:, at] / c) * c for at, c in zip((0, 2), (2.0 * np.pi / 2**b for b in bits)))
     return {"t": np.arange(command.size) / rate, "command": command, "motor": motor, "link": link}
