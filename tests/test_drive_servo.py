@@ -38,7 +38,8 @@ def servo(rig=RIG, tmax=None, **more):
 
 
 def recorded(rig, seed, seconds, which=("motor", "link"), effects=None, limit=1e9):
-    seen = commanded_record(rig, gains(rig, limit), effects or {}, np.random.default_rng(seed), seconds)
+    # The command is exact: the other program's steps of 10 us, whose switches are late by one, would be seen.
+    seen = commanded_record(rig, gains(rig, limit), effects or {}, np.random.default_rng(seed), seconds, parts=1000)
     return jb.Record(seen["t"], {n: seen[n] for n in ("command", *which)}, ratio=rig.ratio)
 
 
