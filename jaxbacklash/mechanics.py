@@ -130,13 +130,14 @@ class AbstractEffect(eqx.Module):
     data often cannot tell apart; ``catalogued`` False keeps a law out of the search for missing effects; ``slides`` True for dry
     friction, whose torque is ``dry`` against the direction of sliding at its port; ``rings`` True where its states go on by
     themselves for long, linear in where they began; ``beside`` True for friction in the joint that stands beside another law of
-    it, where else there is one; ``plays`` True where its kinks are the edges of a play of its own, met as often as those of
-    the joint; ``absorbs`` names of simpler laws that this one contains, so that it takes their place instead of standing beside
-    them (parameters of one name are then the same); ``yields`` parameters that the presence of another effect
-    makes superfluous, and that effect's name: held beside it; ``motions`` of a link for which the law makes sense, ``"turning"``
-    and ``"sliding"``; ``joints`` in which it does something that the joint does not do already, ``"play"``, ``"spring"`` and
-    ``"free"``; ``alike`` names of laws for which it is taken, or they for it, each with what a record must hold to tell the two;
-    ``wave`` for a law that is a sine of a coordinate.
+    it, where else there is one; ``plays`` the name of its parameter that is the total of a play of its own, between the link
+    and its first state, a place whose speed is the second: the edges are its kinks, met as often as those of the joint;
+    ``absorbs`` names of simpler laws that this one contains, so that it takes their place instead of standing beside them
+    (parameters of one name are then the same); ``yields`` parameters that the presence of another effect makes superfluous, and
+    that effect's name: held beside it; ``motions`` of a link for which the law makes sense, ``"turning"`` and ``"sliding"``;
+    ``joints`` in which it does something that the joint does not do already, ``"play"``, ``"spring"`` and ``"free"``; ``alike``
+    names of laws for which it is taken, or they for it, each with what a record must hold to tell the two; ``wave`` for a law
+    that is a sine of a coordinate.
     """
 
     states: ClassVar[tuple[str, ...]] = ()
@@ -147,7 +148,7 @@ class AbstractEffect(eqx.Module):
     slides: ClassVar[bool] = False
     rings: ClassVar[bool] = False
     beside: ClassVar[bool] = False
-    plays: ClassVar[bool] = False
+    plays: ClassVar[str] = ""
     absorbs: ClassVar[tuple[str, ...]] = ()
     yields: ClassVar[dict[str, str]] = {}
     motions: ClassVar[tuple[str, ...]] = ("turning", "sliding")

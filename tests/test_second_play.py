@@ -10,6 +10,8 @@ from jaxbacklash.effects import FlexibleLink, SecondPlay
 from jaxbacklash.mechanics import canonical_name
 from jaxbacklash.models import free_axis, linear_oscillator
 
+from .hidden import hidden
+
 LINK = {"J2": 0.6, "k2": 17000.0, "c2": 3.0}
 SHAKEN = jb.Harmonic(0.05, 14.0)
 
@@ -70,3 +72,18 @@ def test_derivatives_across_its_contacts(name):
     difference = (4.0 * sides[0] - sides[1]) / 3.0
     error = np.abs(exact - difference) / np.max(np.abs(difference), axis=1, keepdims=True)
     assert np.quantile(error, 0.98) < 1e-3
+
+
+@pytest.mark.slow
+def test_a_fit_finds_it_by_its_name():
+    """A chirp of 10 s, the second link never seen: without a value from the user all that it says is within 5 % of the truth."""
+    true = {"J2": 0.6, "k2": 17000.0, "c2": 4.0, "b2": 0.01}
+    record, rig, _, _ = hidden("second_play", "chirp", 5, 10.0, **true)
+    found = jb.fit(record, inertia=rig.inertia, effects=["second_play"])
+    assert found.score.median < 1.1
+    for name in ("backlash", "stiffness", "damping"):
+        assert found.parameters[name].value == pytest.approx(getattr(rig, name), rel=0.01)
+    for name, value in true.items():
+        number = found.parameters[f"second_play.{name}"]
+        assert number.value == pytest.approx(value, rel=0.05)
+        assert abs(number.value - value) < 4.0 * number.stderr

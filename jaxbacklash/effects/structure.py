@@ -71,7 +71,7 @@ class SecondPlay(AbstractEffect):
     states: ClassVar[tuple[str, ...]] = ("y2", "dy2")
     port: ClassVar[str] = "ground"
     catalogued: ClassVar[bool] = False
-    plays: ClassVar[bool] = True
+    plays: ClassVar[str] = "b2"
     absorbs: ClassVar[tuple[str, ...]] = ("flexible_link",)
     alike: ClassVar[dict[str, str]] = {
         "flexible_link": "swings of several sizes: a play shows less of itself the larger they are"

@@ -16,7 +16,7 @@ import numpy as np
 from ..errors import NoAnswer
 from ..once import once
 from ..one_encoder.carried import one_side
-from ..one_encoder.near_by import Means, near_by
+from ..one_encoder.near_by import Means, in_turns, near_by
 from ..shooting.information import freedom, inverse_information
 from ..shooting.levenberg import Levenberg, Minimum, minimise
 from ..shooting.problem import Problem, Unknowns
@@ -136,6 +136,8 @@ def search(
     guess = first_guess(problem)
     if one_side(system):
         return _one_side(problem, guess, free, seed, progress)
+    if system.plays:
+        return _second_links(problem, guess, progress)
     if spare and starts > 1 and (enough := _from_the_first(problem, guess, seed, progress)) is not None:
         return enough
     short = segment(problem, guess) if rough or starts > 1 else None
@@ -251,6 +253,16 @@ def _one_side(problem: Problem, guess: Unknowns, free: Sequence[str], seed: int,
         # Of such a fit even what it tells most sharply was twelve standard errors off.
         raise NoAnswer(UNSEEN)
     return Found(found, 1, 1, steps + int(loose.stats["steps"]) + _steps(found))
+
+
+def _second_links(problem: Problem, guess: Unknowns, progress: Callable[[str, float], None]) -> Found:
+    """`search` for a joint with a play behind the link: in turns with what finds the hidden starts, then with tighter ties."""
+    progress("looking for the link that is not seen", 0.05)
+    begin, steps = in_turns(problem, guess, Means(segment, _roughly, EXPLAINED))
+    found = _continued(problem, begin, first=LOOSE)
+    if not np.isfinite(found.log_evidence):
+        raise NoAnswer(NOWHERE)
+    return Found(found, 1, 1, steps + _steps(found))
 
 
 def _roughly(problem: Problem, tie: float, begin: Unknowns, limit: int) -> Minimum:

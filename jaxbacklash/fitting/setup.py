@@ -15,7 +15,7 @@ from ..compiled import kept_jit
 from ..effects import Contact, Damper, Servo, Spring
 from ..errors import BadInput
 from ..mechanics import AbstractEffect, Drive, canonical_name, catalogue, motion_of
-from ..one_encoder.carried import filtered, one_side
+from ..one_encoder.carried import filtered, hides
 from ..parameters import free_specs, ravel, specs, values, with_values
 from ..records import Record
 from ..regression.along_motion import Motion, own_states
@@ -273,10 +273,10 @@ def first_guess(problem: Problem) -> Unknowns:
     if sticks_and_slips(system):
         theta = np.zeros(problem.directions.shape[1])
         return Unknowns(theta, np.asarray(march(problem, theta, w.coefficients)), np.asarray(w.coefficients))
+    zero = np.zeros(problem.directions.shape[1])
+    if hides(system) and system.observed != "T":
+        return Unknowns(zero, filtered(problem, zero)[0], np.asarray(w.coefficients))
     if system.motor is not None:
-        zero = np.zeros(problem.directions.shape[1])
-        if one_side(system):
-            return Unknowns(zero, filtered(problem, zero)[0], np.asarray(w.coefficients))
         return Unknowns(zero, drive_at_rest(w, system, np.asarray(w.starts)), np.asarray(w.coefficients))
     y, dy = np.asarray(w.starts)
     if system.observed == "T":
@@ -286,7 +286,7 @@ def first_guess(problem: Problem) -> Unknowns:
     starts = read_through(w, at_rest(w, system, y, dy), system)
     if len(starts) > 2 and system.observed != "T":
         starts = np.concatenate([starts[:2], followed(w, system, starts[0], starts[1])])
-    return Unknowns(np.zeros(problem.directions.shape[1]), starts, np.asarray(w.coefficients))
+    return Unknowns(zero, starts, np.asarray(w.coefficients))
 
 
 def drive_at_rest(w: Windows, system: System, starts: np.ndarray) -> np.ndarray:

@@ -6,4 +6,5 @@ Between `jaxbacklash.shooting`, on whose problem it works, and `jaxbacklash.fitt
 from .carried import carried as carried
 from .carried import one_side as one_side
 from .near_by import Means as Means
+from .near_by import in_turns as in_turns
 from .near_by import near_by as near_by

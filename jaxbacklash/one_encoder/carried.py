@@ -7,7 +7,8 @@ samples to the window's start and their weights W,
 .. math:: s \leftarrow s + (I + P C^\top W C)^{-1} P C^\top W\,(y - h(s)),
 
 twice, since an edge of the play may lie between. What comes in between windows is what ties of a given weight let pass. It is
-where `jaxbacklash.fitting.setup.first_guess` begins.
+where `jaxbacklash.fitting.setup.first_guess` begins. A second link behind a play (a law that ``plays``) is found alike: while it
+is in its play nothing shows on which side it will leave, so that each window is tried with it at either edge as well.
 
 Source: Bell and Cathey, IEEE Trans. Automatic Control 38 (1993) 294, on the iterated filter as a Gauss-Newton method.
 """
@@ -37,6 +38,11 @@ PASSES = 1e-2
 def one_side(system: System) -> bool:
     """Whether this is a drive of which motor or link is not seen."""
     return system.motor is not None and len(system.channels) == 1
+
+
+def hides(system: System) -> bool:
+    """Whether something moves unseen behind a play: the other side of a drive, or a second link."""
+    return one_side(system) or bool(system.plays)
 
 
 def filtered(problem: Problem, theta: Array) -> tuple[np.ndarray, float]:
@@ -72,7 +78,7 @@ def carried(problem: Problem, theta: Array) -> tuple[Array, Array]:
     local = local_coefficients(w, w.coefficients)
     follows = jnp.concatenate([jnp.zeros(1), w.tie[:-1]])
     n = len(system.state_names)
-    loose = jnp.zeros(n).at[:4].set((PASSES * w.drop) ** -2)
+    loose = jnp.zeros(n).at[: system.mechanical].set((PASSES * w.drop) ** -2)
     at_first = _open(problem, system)
 
     def step(carry: Any, at: Any) -> Any:
@@ -95,7 +101,16 @@ def carried(problem: Problem, theta: Array) -> tuple[Array, Array]:
             surprise = 0.5 * ((weight * off) @ jnp.linalg.solve(own, weight * off) + jnp.linalg.slogdet(own)[1])
             return prior + gain @ (weighted @ off), gain, end, end_by_start, surprise
 
+        def likely(begin: Array) -> tuple[Array, Array]:
+            found = seen(seen(begin)[0])[0]
+            off, change = weight * jnp.where(weight > 0.0, measured - run(found)[0], 0.0), found - prior
+            cost = off @ off + change @ jnp.linalg.solve(spread + jnp.diag(1e-6 * at_first), change)
+            return jnp.nan_to_num(cost, nan=jnp.inf), found
+
         begin = seen(prior)[0]
+        if system.plays:  # within a play nothing shows on which side it will be left
+            costs, ends = jax.vmap(likely)(_across(system, prior))
+            begin = ends[jnp.argmin(costs)]
         found, gain, end, end_by_start, surprise = seen(begin)
         after = end + end_by_start @ (found - begin)
         sound = jnp.all(jnp.isfinite(after)) & jnp.all(jnp.isfinite(found))
@@ -108,16 +123,28 @@ def carried(problem: Problem, theta: Array) -> tuple[Array, Array]:
     return starts.T, jnp.sum(surprises)
 
 
+def _across(system: System, state: Array) -> Array:
+    """A state (n,), and the same with each second link at both edges of its play, (K, n)."""
+    found = [state]
+    for name in system.plays:
+        law = system.effects[name]
+        place = system.state_names.index(f"{name}.{law.states[0]}")
+        found += [state.at[place].set(state[0] + side * 0.55 * getattr(law, law.plays)) for side in (-1.0, 1.0)]
+    return jnp.stack(found)
+
+
 def _open(problem: Problem, system: System) -> Array:
-    """Variance (n,) of a start of which nothing is known: the hidden side anywhere in its play, as fast as the seen one at
+    """Variance (n,) of a start of which nothing is known: what is hidden anywhere in its play, as fast as what is seen at
     most."""
-    assert system.motor is not None
-    w, gear = problem.windows, system.motor.ratio
+    w = problem.windows
     play = 0.0 if system.contact is None else getattr(system.contact, "backlash", 0.0)
     used = jnp.any(w.weight > 0.0, axis=1)
     speed = jnp.sum(jnp.where(used, w.starts[1] ** 2, 0.0)) / jnp.maximum(jnp.sum(used), 1)
-    own = jnp.stack([(0.5 * play) ** 2, 0.1 * speed])
-    hidden = own if "motor" in system.channels else gear**2 * own
-    seen = (0.1 * w.drop) ** -2
-    both = jnp.concatenate([hidden, seen[2:]]) if "motor" in system.channels else jnp.concatenate([seen[:2], hidden])
-    return jnp.zeros(len(system.state_names)).at[:4].set(both)
+    found = jnp.zeros(len(system.state_names)).at[: system.mechanical].set((0.1 * w.drop) ** -2)
+    if system.motor is not None and one_side(system):
+        own = jnp.stack([(0.5 * play) ** 2, 0.1 * speed])
+        found = found.at[:2].set(own) if "motor" in system.channels else found.at[2:4].set(system.motor.ratio**2 * own)
+    for name in system.plays:
+        first, law = system.state_names.index(f"{name}.{system.effects[name].states[0]}"), system.effects[name]
+        found = found.at[first : first + 2].set(jnp.stack([(0.5 * getattr(law, law.plays)) ** 2, 0.1 * speed]))
+    return found
