@@ -86,7 +86,7 @@ def run(rig, states, push, finer):
 def test_windows_follow_the_other_program(case, push):
     """Windows of a tenth of a second, each begun from the true state: what is left is the steps' error, and the other's.
 
-    Steps of a sample; where several ports rub, which may all turn within one, of a quarter.
+    Steps of a sample; where several ports rub, or one beside a second play, which may all turn within one, of a quarter.
     """
     names = CASES[case]
     states = truth(names, push)
@@ -94,7 +94,7 @@ def test_windows_follow_the_other_program(case, push):
     grid = first[:, None] + np.arange(WINDOW)
     begin = tuple(jnp.asarray(states[first, at]) for at in STATES[: 6 if "second_play" in names else 4])
     edges = np.append(push, push[-1])[first[:, None] + np.arange(WINDOW + 1)]
-    found = np.asarray(run(system(names), begin, jnp.asarray(edges), 4 if len(set(names) & set(DRY)) > 1 else 1))
+    found = np.asarray(run(system(names), begin, jnp.asarray(edges), 4 if len(set(names) & {*DRY, "second_play"}) > 1 else 1))
     error_y = np.abs(found[:, 0] - states[grid, 2])
     error_th = np.abs(found[:, 2] - states[grid, 0]) / RIG.ratio
     assert np.ptp(states[:, 2] - states[:, 0] / RIG.ratio) > 1.2 * RIG.backlash  # both edges are met

@@ -116,14 +116,18 @@ def test_windows_follow_the_generator(names, motion):
 
 
 def test_two_seconds_of_a_second_play_follow_the_generator():
-    """Five stretches of 2 s in panels of a fit, each with dozens of contacts of the second link, which make small differences
-    grow: in one of them tenfold in a fifth of a second."""
+    """Five stretches of 2 s in panels of a fit, with 34 contacts of the second link each.
+
+    Errors found: median 1.4e-7 rad; at most 1.2e-6 within half a second and 1.1e-5 within two, but for one stretch in which
+    chaos makes 2e-3 of it.
+    """
     states = truth(("second_play",), MOTIONS["multisine"](), 10.0)[1]
     outside = np.abs(states[:, 2] - states[:, 0]) > 0.5 * float(LAWS["second_play"].b2)
     assert np.count_nonzero(np.diff(outside.astype(int)) > 0) > 100
     error = window_errors(("second_play",), MOTIONS["multisine"](), 10.0, length=1000)
     assert np.median(error) < 1e-6
-    assert np.max(error[:, :300]) < 1e-5
+    assert np.max(error[:, :250]) < 3e-6
+    assert np.sort(np.max(error, axis=1))[-2] < 3e-5
 
 
 TOGETHER = tuple(n for n in LAWS if n in _COLUMNS and n not in (*DRY, *HIDDEN, *SECOND, "relaxation"))
