@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -156,7 +157,7 @@ def fit(
     excess = inflation(found.misfit, scored[0], tied=found.tied, one_run=sticks_and_slips(system))
     covariance = excess * found.covariance
     stderr = dict(zip(names, np.sqrt(np.diag(covariance))))
-    unscaled = chosen[0].input_name == "command" and float(fitted.motor.motor_inertia) == 1.0  # type: ignore[union-attr]
+    unscaled = chosen[0].input_name == "command" and math.isclose(fitted.motor.motor_inertia, 1.0)  # type: ignore[union-attr]
     per_inertia = inertia is None and (chosen[0].kind not in ABSOLUTE or unscaled)
     estimates = judge(
         fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational, covariance=covariance,
