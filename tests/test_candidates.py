@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from jaxbacklash.criticism.candidates import predicted_gain, score_test
+from jaxbacklash.criticism.candidates import likeliest_sine, predicted_gain, score_test
 from jaxbacklash.criticism.evidence import gain
 
-from .hidden import fitter, hidden
+from .hidden import fitter, hidden, noisier
 
 
 def test_a_candidate_whose_trajectory_runs_away_promises_nothing():
@@ -25,6 +25,21 @@ def test_what_it_promises_of_a_weak_law_comes_true():
     assert promised.gain == pytest.approx(brought, rel=0.2)
     assert float(promised.effect.G) == pytest.approx(found.value["gravity.G"], rel=0.2)
     assert 0.0 < promised.share <= 1.0
+
+
+@pytest.mark.parametrize("seed", [4, 7])
+def test_a_hum_is_read_off_a_fitted_trajectory_though_noise_hides_it(seed):
+    """A tenth of the torque that drives the link, under thirty times the noise of the other tests."""
+    record, rig, _, _ = hidden("disturbance", "multisine", seed, 8.0, A=6.0, omega=49.0, phi=0.7)
+    own = fitter(noisier(record, 30.0, seed), rig.inertia)
+    alone = own.fit_model({})
+    found = likeliest_sine(own, alone)
+    assert found.frequency == pytest.approx(49.0, abs=np.pi / 8.0 / 2.0)
+    assert found.gain > 30.0
+    (promised,) = score_test(own, alone, ["disturbance"])
+    kept = own.fit_model({"disturbance": promised.effect}, alone)
+    assert kept.value["disturbance.omega"] == pytest.approx(49.0, abs=0.05)
+    assert abs(kept.value["disturbance.A"]) == pytest.approx(6.0, rel=0.1)
 
 
 def test_a_strength_that_physics_forbids_promises_nothing():

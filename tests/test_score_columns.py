@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from jaxbacklash.criticism.perturbed import panel_edges
 from jaxbacklash.fitting.continuation import tied
 from jaxbacklash.shooting.levenberg import Levenberg, minimise
 from jaxbacklash.shooting.problem import Unknowns, changed
-from jaxbacklash.shooting.score_columns import information_beside
+from jaxbacklash.shooting.score_columns import information_beside, torque_scores
 
 from .hidden import fitter, hidden
 
@@ -60,6 +61,24 @@ def test_the_column_of_a_shift_is_how_the_cost_falls_with_it(fitted):
     alone = np.linalg.solve(information[np.ix_(own_only, own_only)], score[own_only])
     fall = 0.5 * (score[active] @ step - score[own_only] @ alone)
     assert lowest(0.0) - lowest(float(step[-1])) == pytest.approx(fall, rel=1e-3)
+
+
+def test_the_scores_of_a_torque_are_the_gradient_of_the_cost(fitted):
+    """Against differences of the cost over the size of a torque, with all unknowns held where the fit ended."""
+    own, model = fitted
+    problem, _ = own.problem({}, model.system)
+    problem = tied(problem, model.tie)
+    at = Unknowns(np.zeros(problem.directions.shape[1]), model.unknowns.starts, model.unknowns.coefficients)
+    times, scores = torque_scores(problem, at)
+    torque = np.sin(9.0 * panel_edges(own))
+
+    def cost(size):
+        pushed = changed(problem, windows=changed(problem.windows, force=np.asarray(own.windows.force) + size * torque))
+        return float(minimise(pushed, at, Levenberg(limit=1)).stats["cost"])
+
+    slope = (cost(1e-3) - cost(-1e-3)) / 2e-3
+    assert np.sum(scores * np.sin(9.0 * times)) == pytest.approx(-slope, rel=1e-2)
+    assert abs(slope) > 1.0
 
 
 @pytest.mark.slow

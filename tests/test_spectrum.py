@@ -5,6 +5,7 @@ import pytest
 
 pytest.importorskip("numba", reason="the generator needs numba")
 
+from jaxbacklash.criticism.candidates import likeliest_sine
 from jaxbacklash.mechanics import catalogue
 from jaxbacklash.parameters import values
 from jaxbacklash.regression.spectrum import read_off
@@ -17,8 +18,13 @@ SHARE = {"t": 0.1, "x": 0.2, "y": 0.2}
 
 def found(name, kind, seed, **told):
     record, rig, effects, _ = hidden(name, kind, seed, **told)
-    own = fitter(record, rig.inertia)
-    return read_off(own.weak_form, own.base, own.base_free, catalogue()[name]), effects[name], own.weak_form.motion
+    own, law = fitter(record, rig.inertia), catalogue()[name]
+    if law.wave.over == "t":
+        sine = likeliest_sine(own, own.fit_model({}))
+        read = law(sine.amplitude, sine.frequency, sine.phase)
+    else:
+        read = read_off(own.weak_form, own.base, own.base_free, law)
+    return read, effects[name], own.weak_form.motion
 
 
 @pytest.mark.parametrize("kind", ["multisine", "chirp", "stepped"])

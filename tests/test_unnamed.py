@@ -3,18 +3,14 @@
 from types import SimpleNamespace
 
 import equinox as eqx
-import numpy as np
 import pytest
 
 import jaxbacklash as jb
 from jaxbacklash.criticism.evidence import SURE, demanded, leaves_noise
-from jaxbacklash.criticism.unnamed import Unnamed, best_fall, glimpses, rhythm, unnamed
+from jaxbacklash.criticism.unnamed import Unnamed, best_fall, glimpses, unnamed
 from jaxbacklash.criticism.verdict import judge_rest
-from jaxbacklash.records import Record
-from jaxbacklash.regression.weak_form import WeakForm
-from jaxbacklash.signals import Bump
 
-from .hidden import NOISE, fitter, hidden, noisier
+from .hidden import fitter, hidden, noisier
 
 RHYTHM = {"A": 0.8, "w": 33.0, "phi": 0.4}
 
@@ -102,28 +98,6 @@ def test_what_the_model_can_do_itself_is_no_glimpse():
     record, rig, _, _ = hidden("contact_damping", "multisine", 3)
     own, model = fitted(record, rig.inertia, "contact_damping")
     assert not any("speed in the play" in g.words for g in glimpses(own, model, own.weak_form))
-
-
-def test_a_rhythm_is_found_at_its_frequency_and_phase():
-    t = np.arange(5000) / 500.0
-    rng = np.random.default_rng(1)
-    x, z = 0.05 * np.sin(20.0 * t), 0.03 * np.sin(20.0 * t) + NOISE * rng.standard_normal(t.size)
-    form = WeakForm(Record(t, {"x": x, "z": z}))
-    wave = 2.0 * np.cos(2.0 * np.pi * 7.32 * t + 0.7)
-    seen = form.average(wave)
-    rest = seen + 0.5 * seen.std() * rng.standard_normal(seen.size)
-    hertz, torque = rhythm(form, rest, lambda rows: rows)
-    assert hertz == pytest.approx(7.32, abs=0.5 / t[-1])
-    assert np.corrcoef(torque, wave)[0, 1] > 0.98
-    assert np.std(torque) == pytest.approx(np.std(wave), rel=0.15)
-
-
-@pytest.mark.parametrize("hertz", [0.5, 5.0, 12.0, 25.0])
-def test_the_bump_passes_as_much_of_a_sine_as_it_says(hertz):
-    t = np.arange(5000) / 500.0
-    bump = Bump(t.size, t[1])
-    through = np.std(bump.against(np.sin(2.0 * np.pi * hertz * t))) / np.std(np.sin(2.0 * np.pi * hertz * t))
-    assert bump.passes(np.array([hertz]))[0] * bump.against(np.ones(t.size))[0] == pytest.approx(through, rel=0.02)
 
 
 @pytest.mark.parametrize(

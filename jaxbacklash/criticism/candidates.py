@@ -15,12 +15,16 @@ import numpy as np
 
 from ..fitting.continuation import tied
 from ..fitting.settings import MEASURING, PROMISING
+from ..fitting.stick_slip import sticks_and_slips
 from ..mechanics import AbstractEffect
 from ..parameters import free_specs, specs, with_values
-from ..regression.spectrum import read_off
+from ..regression.spectrum import lines, read_off
+from ..shooting.problem import Problem, Unknowns
+from ..shooting.score_columns import TOGETHER, information_beside, torque_scores
 from .evidence import measures_only
 from .fitted_model import FittedModel
 from .model_builder import ModelBuilder, strengths, width
+from .perturbed import as_it_ended, panel_edges
 
 
 @dataclass(frozen=True)
@@ -81,12 +85,72 @@ def rubs(law: type[AbstractEffect]) -> bool:
 def shaped(builder: ModelBuilder, model: FittedModel, name: str) -> list[AbstractEffect]:
     """The law at its null strength, at the likeliest of the shapes it may have; at a phase that most rigs have too."""
     law, form = builder.laws[name], builder.form_of(name)
-    if law.wave is None or form.blind:
+    if law.wave is not None and law.wave.over == "t" and (sine := likeliest_sine(builder, model)) is not None:
+        return [null(law(**{law.wave.phase: sine.phase, str(law.wave.frequency): sine.frequency}))]
+    if law.wave is None or law.wave.over == "t" or form.blind:
         guesses = law.guesses(model.system, form.motion)
         return [null(form.choose(model.system, model.free, guesses)[0])]
     found = read_off(form, model.system, model.free, law)
     usual = specs(found)[law.wave.phase].usual is not None
     return [null(law()), null(found)] if usual else [null(found)]
+
+
+@dataclass(frozen=True)
+class Sine:
+    """A torque A sin(omega t + phi) on the link: ``amplitude`` [N m], angular ``frequency`` [rad/s], ``phase`` [rad]; ``gain``,
+    the fall of twice the cost that it promises, and how many frequencies were ``tried``."""
+
+    amplitude: float
+    frequency: float
+    phase: float
+    gain: float
+    tried: int
+
+
+def likeliest_sine(builder: ModelBuilder, model: FittedModel) -> Sine | None:
+    """The sine over time that a fitted model asks for most: of the highest lines in the scores of a torque along its trajectory
+    the one with the highest score test; None where nothing stands out, or where dry friction holds a link that is not seen."""
+    problem, unknowns = as_it_ended(builder, model)
+    if sticks_and_slips(problem.system):
+        return None
+    times, scores = torque_scores(problem, unknowns)
+    found = lines(times, scores, TOGETHER // 2) if np.all(np.isfinite(scores)) else []
+    if not found:
+        return None
+    edges = panel_edges(builder)
+    torques = np.stack([wave(omega * edges) for omega in found for wave in (np.sin, np.cos)])
+    sizes, gains = zip(*column_gains(problem, unknowns, len(model.free), torques, each=2))
+    best = int(np.argmax(gains))
+    (sine, cosine), omega = sizes[best], found[best]
+    return Sine(float(np.hypot(sine, cosine)), omega, float(np.arctan2(cosine, sine)), gains[best], scores.size)
+
+
+def column_gains(
+    problem: Problem, unknowns: Unknowns, own: int, torques: np.ndarray, shown: np.ndarray | None = None, each: int = 1
+) -> list[tuple[np.ndarray, float]]:
+    """What torques on the link bring beside a problem's ``own`` parameters, by the score test of ``each`` so many together.
+
+    Parameters
+    ----------
+    problem, unknowns : where a fit ended
+    own : its free parameters, the first ones
+    torques : (K, W, P + 1) at panel edges [N m]
+    shown : (K, W, M C) what the measured channels show more with each; default nothing
+
+    Returns
+    -------
+    list of (each,) and float
+        Their sizes, and the fall of twice the cost that they promise together.
+    """
+    shown = np.zeros((len(torques), *np.shape(problem.windows.measured))) if shown is None else shown
+    found, step = [], TOGETHER // each * each
+    for part in (slice(begin, begin + step) for begin in range(0, len(torques), step)):
+        information, score = information_beside(problem, unknowns, torques[part], shown[part])
+        for column in range(len(score) - len(torques[part]), len(score), each):
+            index = [*range(own), *range(column, column + each)]
+            sizes, gain = predicted_gain(information[np.ix_(index, index)], score[index], own)
+            found.append((sizes[own:], gain))
+    return found
 
 
 def null(effect: AbstractEffect) -> AbstractEffect:

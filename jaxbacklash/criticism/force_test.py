@@ -22,8 +22,8 @@ from ..fitting.stick_slip import sticks_and_slips
 from ..mechanics import AbstractEffect
 from ..regression.along_motion import motion, own_states, own_torques
 from ..shooting.problem import Unknowns
-from ..shooting.score_columns import TOGETHER, information_beside, ready
-from .candidates import predicted_gain
+from ..shooting.score_columns import ready
+from .candidates import column_gains
 from .fitted_model import FittedModel
 from .model_fitter import ModelFitter
 from .perturbed import answered, model_record, panel_edges, parabola
@@ -108,15 +108,8 @@ class ForceTest:
         return self._falls(at_edges, np.zeros((len(torques), *np.shape(self.problem.windows.measured))))
 
     def _falls(self, torques: np.ndarray, shown: np.ndarray) -> list[tuple[float, float]]:
-        own, found = list(range(self.free)), []
-        for begin in range(0, len(torques), TOGETHER):
-            part = slice(begin, begin + TOGETHER)
-            information, score = information_beside(self.problem, self.unknowns, torques[part], shown[part])
-            for column in range(len(score) - len(torques[part]), len(score)):
-                index = [*own, column]
-                step, gain = predicted_gain(information[np.ix_(index, index)], score[index], self.free)
-                found.append((gain, float(step[-1])) if step[-1] > 0.0 else (0.0, 1.0))
-        return found
+        told = column_gains(self.problem, self.unknowns, self.free, torques, shown)
+        return [(gain, float(size[0])) if size[0] > 0.0 else (0.0, 1.0) for size, gain in told]
 
     def _answer(self, torque: np.ndarray, share: float) -> float:
         at_edges = np.interp(self.edges, self.along.t, torque)

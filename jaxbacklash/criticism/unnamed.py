@@ -2,7 +2,7 @@ r"""Does what a model leaves hang together in a way that no law of the catalogue
 
 A misfit over all samples hides what is small; along one direction it shows (as powers of what was fitted do in Ramsey's RESET,
 1969). Simple torques that the catalogue does not hold, products of the motion's coordinates and a rhythm of its own, are held
-against the model's own motion, free of noise: the weak form proposes, the score of the fitted trajectory decides.
+against the model's own motion, free of noise: their score tests propose, and what the likeliest bring is tried.
 """
 
 from __future__ import annotations
@@ -16,10 +16,10 @@ import numpy as np
 from ..fitting.settings import ALIKE, SEEN, SURE
 from ..pointwise import along
 from ..regression.along_motion import Motion
-from ..regression.spectrum import highest_line
-from ..regression.weak_form import WeakForm, whitener
+from ..regression.weak_form import WeakForm
 from ..shooting.levenberg import Levenberg, minimise
 from ..system import System
+from .candidates import column_gains, likeliest_sine
 from .evidence import demanded, most_of_noise
 from .fitted_model import FittedModel
 from .model_builder import ModelBuilder
@@ -37,7 +37,8 @@ class Unnamed:
 
 @dataclass(frozen=True)
 class Glimpse:
-    """A torque (N,) along the model's own motion, at its likeliest size: one of ``tried`` of its kind."""
+    """A torque (W, P + 1) at the panel edges of the model's own motion, at its likeliest size: one of ``tried`` of its kind.
+    ``evidence``, the fall of twice the cost that it promises."""
 
     words: str
     torque: np.ndarray
@@ -62,16 +63,14 @@ def unnamed(builder: ModelBuilder, model: FittedModel) -> Unnamed | None:
     still = float(ended["cost"] - ended["promise"])
     own = WeakForm(model_record(builder, ended["predicted"]))
     applied = np.asarray(builder.windows.force)
-    edges = panel_edges(builder)
     unit = 0.5 * max(1.0, model.misfit**2) * model.correlation
     found = []
     likely = glimpses(builder, model, own)
     # What a sensor explains as well that was read along a line between two samples, as one that lags may be, is no torque.
     read = 0.5 * blurred(builder, model) / unit if likely and delayed(builder, model) else 0.0
     for seen in likely:
-        torque = np.interp(edges, own.motion.t, seen.torque)
 
-        def rise(share: float, torque: np.ndarray = torque) -> float:
+        def rise(share: float, torque: np.ndarray = seen.torque) -> float:
             return answered(eqx.tree_at(lambda p: p.windows.force, problem, applied + share * torque), unknowns)[0] - still
 
         bar = read + seen.chance + SURE * demanded(builder)
@@ -95,29 +94,27 @@ def best_fall(rise: Callable[[float], float], furthest: float = 3.0) -> float:
 
 
 def glimpses(builder: ModelBuilder, model: FittedModel, own: WeakForm, keep: int = 3) -> list[Glimpse]:
-    """The ``keep`` likeliest torques outside the catalogue beside a model, whose own motion looks like ``own``.
+    """The ``keep`` likeliest torques outside the catalogue beside a model, whose own motion looks like ``own``, by the score test
+    of each along it.
 
     What the model's parameters can do is taken off them, so that they bend its trajectory no more than they have to.
     """
-    left, by = builder.weak_form.missing(model.system, model.free)
-    left = left - own.missing(model.system, model.free)[0]
-    white = whitener(left - by @ np.linalg.lstsq(by, left, rcond=None)[0])
-    seen, ways = white(left), white(by)
-    rest = seen - ways @ np.linalg.lstsq(ways, seen, rcond=None)[0]
-
     words, torques = zip(*products(model.system, own.motion).items())
-    hertz, wave = rhythm(own, rest, white)
-    rows = np.stack([*torques, wave])
-    columns = white(own.average(rows).T)
-    made_up = np.linalg.lstsq(ways, columns, rcond=None)[0]
-    whole, columns = np.sum(columns**2, axis=0), columns - ways @ made_up
-    power = np.sum(columns**2, axis=0)
-    power = np.where(power > ALIKE * whole, np.maximum(power, 1e-300), np.inf)
-    sizes = columns.T @ rest / power
-    evidence = sizes**2 * np.where(np.isfinite(power), power, 0.0) / max(float(np.mean(rest**2)), 1e-300)
-    rows = sizes[:, None] * (rows - made_up.T @ own.along(model.system, model.free)[1])
-    told, tried = [*words, f"a rhythm of its own of {hertz:.3g} Hz"], [*(len(words) for _ in words), rest.size]
-    found = [Glimpse(*one) for one in zip(told, rows, evidence, tried)]
+    rows, by = np.stack(torques), own.along(model.system, model.free)[1]
+    left = rows - np.linalg.lstsq(by.T, rows.T, rcond=None)[0].T @ by
+    told = np.sum(left**2, axis=1) > ALIKE * np.sum(rows**2, axis=1)
+    edges = panel_edges(builder)
+    at_edges = [np.interp(edges, own.motion.t, row) for row in left[told]]
+    problem, unknowns = as_it_ended(builder, model)
+    found = [
+        Glimpse(word, float(size[0]) * torque, gain, len(words))
+        for word, torque, (size, gain) in zip(
+            np.array(words)[told], at_edges, column_gains(problem, unknowns, len(model.free), np.stack(at_edges))
+        )
+    ]
+    if (sine := likeliest_sine(builder, model)) is not None:
+        course = sine.amplitude * np.sin(sine.frequency * edges + sine.phase)
+        found.append(Glimpse(f"a rhythm of its own of {sine.frequency / (2.0 * np.pi):.3g} Hz", course, sine.gain, sine.tried))
     likely = [g for g in found if g.evidence > max(SEEN, g.chance)]
     return sorted(likely, key=lambda g: -g.evidence)[:keep]
 
@@ -151,18 +148,3 @@ def products(system: System, m: Motion) -> dict[str, np.ndarray]:
         "the base's speed": dx,
         "the square of the base's speed": dx * np.abs(dx),
     }
-
-
-def rhythm(form: WeakForm, rest: np.ndarray, white: Callable[[np.ndarray], np.ndarray]) -> tuple[float, np.ndarray]:
-    """The sine that is likeliest in what is left: its frequency [Hz], and its torque (N,) at the likeliest phase.
-
-    Parameters
-    ----------
-    form : of the record
-    rest : (R,) what is left under the bumps, whitened
-    white : the filter that whitened it
-    """
-    best = highest_line(form, rest)[0]
-    angle = 2.0 * np.pi * best * (form.motion.t - form.motion.t[0])
-    pair = np.stack([np.cos(angle), np.sin(angle)])
-    return best, np.linalg.lstsq(white(form.average(pair).T), rest, rcond=None)[0] @ pair

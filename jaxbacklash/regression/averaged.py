@@ -34,7 +34,7 @@ class Averaged:
     def __init__(self, record: Record, half_width: float = HALF_WIDTH) -> None:
         self._bump = Bump(record.samples, record.dt, half_width)
         self.spacing = self._bump.stride * record.dt
-        self.passes, self.loudness = self._bump.passes, self._bump.loudness
+        self.loudness = self._bump.loudness
         self.x = record.channels.get("x", np.zeros(record.samples))
         seen = record.channels[record.observed_name]
         self.y = seen + self.x if record.observed_name == "z" else seen

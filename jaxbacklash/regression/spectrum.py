@@ -1,9 +1,11 @@
 r"""Frequency and phase of a law that repeats, read off the spectrum of the missing torque.
 
 A law says by its `jaxbacklash.mechanics.Wave` of which coordinate it is a sine: of time, as a hum that nobody recorded, or of the
-angle of link or base, as the teeth of a gear. Its frequency is then no matter of guesses. The torque that a model leaves,
-averaged under the bumps of the weak form, is regressed on sine and cosine of each frequency that the record can tell; the one
-that takes most of it away is the likeliest (Lomb 1976, Scargle 1982), and the two sizes give amplitude and phase.
+angle of link or base, as the teeth of a gear. Its frequency is then no matter of guesses. Over an angle (`read_off`), the torque
+that a model leaves, averaged under the bumps of the weak form, is regressed on sine and cosine of each frequency that the record
+can tell; the one that takes most of it away is the likeliest (Lomb 1976, Scargle 1982), and the two sizes give amplitude and
+phase. Over time (`lines`), the scores of a torque along a fitted trajectory are transformed, which noise hides far less than the
+measured motion's second derivative.
 """
 
 from __future__ import annotations
@@ -33,7 +35,7 @@ def read_off(
     ----------
     form : the record
     system, free : a model and the parameters in which it can still move
-    law : a class with a `Wave`
+    law : a class with a `Wave` over an angle
     finer : steps of an order to the width of a line
     most : frequencies over an angle, at most
     rounds : times the noise is judged anew, without the line that was found
@@ -47,7 +49,6 @@ def read_off(
     weight = own_torques([unit], system, form.motion)[0] / scale
     if wave.frequency is None:
         weight = np.ones_like(weight)
-    form = form.quick if wave.over == "t" else form
     over = np.asarray(getattr(form.motion, wave.over))
 
     def pair(frequency: float) -> np.ndarray:
@@ -58,9 +59,6 @@ def read_off(
     left, by = form.missing(system, free)
     rest, frequency, sizes = left - by @ np.linalg.lstsq(by, left, rcond=None)[0], 1.0, np.zeros(2)
     spec, step = fields.get(wave.frequency or ""), 0.0
-    if spec is not None and wave.over == "t":
-        lines, step = _lines(form, rest)
-        frequency = max(lines, key=lambda f: _fall(pair(f), rest))
     for _ in range(rounds):
         white = whitener(rest)
         basis = np.linalg.qr(white(by))[0]
@@ -71,10 +69,9 @@ def read_off(
 
         if spec is not None:
             seen = own(left)
-            if wave.over != "t":
-                known = form.kept(canonical_name(law), lambda: _over_angle(pair, over, spec, finer, most, wave.whole))
-                frequency, step = _of_angle(known, seen, own)
-                step = 0.0 if wave.whole else step
+            known = form.kept(canonical_name(law), lambda: _over_angle(pair, over, spec, finer, most, wave.whole))
+            frequency, step = _of_angle(known, seen, own)
+            step = 0.0 if wave.whole else step
 
             def height(frequency: float, own: Any = own, seen: np.ndarray = seen) -> float:
                 return _fall(own(pair(frequency)), seen)
@@ -90,40 +87,32 @@ def read_off(
     return law(**{wave.strength: amplitude, wave.phase: phase, **told})
 
 
-def highest_line(form: WeakForm, rest: np.ndarray, *, periods: int = 3, passed: float = 0.2) -> tuple[float, float]:
-    """Frequency of the highest line over time in rows (R,) that are white but for it, and the step to the next one [Hz].
+def lines(times: np.ndarray, scores: np.ndarray, most: int, *, beside: int = 60, periods: float = 3.0) -> list[float]:
+    """Angular frequencies [rad/s] of the highest lines over time in the scores of a torque, at most so many, the highest first.
+
+    The score of a sine is the transform of the scores, and its variance where nothing is missing is its information, smooth in
+    the frequency. So a line is what stands far above what is beside it; what another law leaves is high and wide.
 
     Parameters
     ----------
-    form : the record
-    rest : what is left under its bumps
+    times, scores : (W, K) as `jaxbacklash.shooting.score_columns.torque_scores` tells them
+    most : lines that are told
+    beside : steps of frequency on either side, a quarter of a line's width each, whose median is what a line stands above
     periods : in the record at least; what is slower goes with a drift
-    passed : share of the line that the bumps let pass at least; of what is faster they leave noise
     """
-    # A sine between two frequencies of a spectrum padded to four times its length loses 1 - sinc(1/8)^2, 5 % of its power.
-    padded = 4 * rest.size
-    spectrum, hertz = np.abs(np.fft.rfft(rest, padded)) ** 2, np.fft.rfftfreq(padded, form.spacing)
-    known = (hertz >= periods / (rest.size * form.spacing)) & (form.passes(hertz) > passed)
-    return float(hertz[np.argmax(np.where(known, spectrum, -1.0))]), float(hertz[1])
-
-
-def _lines(
-    form: WeakForm, rest: np.ndarray, *, count: int = 4, beside: int = 60, passed: float = 0.05
-) -> tuple[list[float], float]:
-    """Angular frequencies of the highest lines over time in rows (R,), and the step of frequency [rad/s].
-
-    The highest as they are, and those that stand furthest above what is ``beside`` them, so many steps on either side: what
-    another law leaves is high and wide. A line hides from a filter that whitens rows which hold it.
-    """
-    size = 4 * rest.size
-    spectrum = np.abs(np.fft.rfft(rest * np.hanning(rest.size), size)) ** 2
-    hertz = np.fft.rfftfreq(size, form.spacing)
+    spacing = float(times[0, 1] - times[0, 0])
+    at = np.rint((times.ravel() - times.min()) / spacing).astype(int)
+    course = np.bincount(at, scores.ravel())
+    least = int(np.ceil(4.0 * periods))  # steps of a spectrum padded to four times its length
+    spectrum = np.abs(np.fft.rfft(course * np.hanning(course.size), 4 * course.size)) ** 2
     around = np.lib.stride_tricks.sliding_window_view(np.pad(spectrum, beside, mode="reflect"), 2 * beside + 1)
-    known = (hertz >= 3.0 / (rest.size * form.spacing)) & (form.passes(hertz) > passed)
-    top = (spectrum > np.roll(spectrum, 1)) & (spectrum >= np.roll(spectrum, -1)) & known
-    heights = spectrum, spectrum / np.maximum(np.median(around, axis=1), 1e-300)
-    best = {int(k) for height in heights for k in np.argsort(np.where(top, -height, np.inf))[:count]}
-    return [2.0 * np.pi * float(hertz[k]) for k in sorted(best)], 2.0 * np.pi * float(hertz[1])
+    above = spectrum / np.maximum(np.median(around, axis=1), 1e-300)
+    top = (spectrum > np.roll(spectrum, 1)) & (spectrum >= np.roll(spectrum, -1))
+    top[:least] = False
+    order = [int(k) for k in np.argsort(np.where(top, -above, np.inf))[:most] if top[k]]
+    left, high, right = (np.log(np.maximum(np.roll(spectrum, by), 1e-300)) for by in (1, 0, -1))
+    between = 0.5 * (left - right) / (left - 2.0 * high + right - 1e-300)  # where a parabola through three is highest
+    return [2.0 * np.pi * float(k + between[k]) / (4 * course.size * spacing) for k in order]
 
 
 def _over_angle(

@@ -15,18 +15,14 @@ import numpy as np
 from scipy import linalg
 
 from ..mechanics import AbstractEffect, canonical_name
-from ..once import once
 from ..parameters import free_specs, ravel, specs
 from ..records import Record
-from ..signals.bump import HALF_WIDTH
 from ..system import System
 from .along_motion import Motion, motion, own_torques, ringing, torques
 from .averaged import Averaged
 
 ORDER = 8
 """Order of the autoregression that whitens the rows."""
-QUICKER = 4.0
-"""How many times shorter bumps are that a hum of tens of hertz passes."""
 RUNAWAY = 1e30
 """A torque this large, whatever its unit, belongs to a motion that has run away, and explains nothing. Its fourth power, which a
 regression forms, stays within double precision."""
@@ -40,21 +36,16 @@ class WeakForm(Averaged):
     one behind the gear stands for that of the other.
     """
 
-    def __init__(self, record: Record, *, quicker: WeakForm | None = None) -> None:
+    def __init__(self, record: Record) -> None:
         seen = _one_for_both(record) if record.blind else record.on_its_base()
-        super().__init__(seen, HALF_WIDTH if quicker is None else HALF_WIDTH / QUICKER)
+        super().__init__(seen)
         self.record = record
-        self.motion: Motion = motion(seen) if quicker is None else quicker.motion
+        self.motion: Motion = motion(seen)
         self.blind = record.blind or record.kind == "transmitted"
         self._columns: dict[str, tuple[np.ndarray, np.ndarray]] = {}
         self._rung: dict[str, tuple[np.ndarray, np.ndarray]] = {}
         self._kept: dict[str, Any] = {}
         self._last: tuple[System, tuple[str, ...], Any] | None = None
-
-    @once
-    def quick(self) -> WeakForm:
-        """The same under bumps `QUICKER` times as short, which let through what changes as much sooner."""
-        return WeakForm(self.record, quicker=self)
 
     def missing(self, system: System, free: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
         """Missing torque under the bump (R,), and how it falls with each free parameter of the model (R, q).

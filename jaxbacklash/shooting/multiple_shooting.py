@@ -14,6 +14,7 @@ tridiagonal matrix with a border, and everything costs in proportion to the leng
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import equinox as eqx
@@ -205,18 +206,24 @@ def _shoot(shared: tuple[Problem, Array], own: Window) -> Shot:
     return Shot(predicted, states, u, du, motion, base, tie, cost)
 
 
-def linearise(problem: Problem, unknowns: Unknowns, shot: Shot, columns: Columns | None = None) -> Blocks:
-    """The blocks of the normal equations at a point where the windows were run through.
+def linearise(problem: Problem, unknowns: Unknowns, shot: Shot) -> Blocks:
+    """The blocks of the normal equations at a point where the windows were run through."""
+    return assembled(problem, unknowns, shot, meet(problem, unknowns, shot))
 
-    Each window has n + m + 5 unknowns and meets the q parameters; the derivatives come from `tangents.rows`. The sizes of K
-    ``columns`` are more parameters, which come after those.
-    """
-    n, q, m = unknowns.starts.shape[0], unknowns.theta.shape[0], problem.windows.intervals
-    q += 0 if columns is None else columns.torques.shape[1]
+
+def meet(problem: Problem, unknowns: Unknowns, shot: Shot, columns: Columns | None = None) -> Met:
+    """Each window's own normal equations, of n + m + 5 unknowns and q parameters; the derivatives come from `tangents.rows`. The
+    sizes of K ``columns`` are more parameters, which come after those."""
     lead = _windows(problem, unknowns), eqx.tree_at(lambda s: (s.cost, s.predicted), shot, (None, None)), columns
-    shared, theta = _bare(problem), unknowns.theta
-    plain = plain_of(shared.windows, rebuild_active(problem), theta)
-    met = by_chunks(_meet, (shared, theta, plain), lead, problem.windows.used)
+    shared = _bare(problem)
+    plain = plain_of(shared.windows, rebuild_active(problem), unknowns.theta)
+    return by_chunks(_meet, (shared, unknowns.theta, plain), lead, problem.windows.used)
+
+
+def assembled(problem: Problem, unknowns: Unknowns, shot: Shot, met: Met) -> Blocks:
+    """The blocks of all windows, from each one's own normal equations."""
+    n, m = unknowns.starts.shape[0], problem.windows.intervals
+    q = met.slope.shape[1] - n - problem.windows.basis.shape[2]
     blocks = assemble(met.gram, met.slope, met.end_rows, shot.tie, met.tie_weight, met.seen, n, m, q, shot.cost)
     return _ridge(problem, unknowns, blocks, n)
 
@@ -313,7 +320,7 @@ def assemble(
     gradient = slope[:, own]
 
     # Unknowns of window w + 1 as window w sees them: its start through the tie, its first spline coefficients.
-    # Padding and joining instead of indexed updates: scatters cost more than the whole simulation on a CPU.
+    # Padding and joining instead of indexed updates, whose scatters cost more than the whole simulation on a CPU.
     weighted = -tie_weight[:, :, None] * jnp.swapaxes(end_rows, 1, 2)  # (W, n, unknowns): start of w + 1 against window w
     cross = weighted[:, :, shared]
     rest = size - n - k
@@ -359,9 +366,7 @@ def _ridge(problem: Problem, unknowns: Unknowns, blocks: Blocks, n: int) -> Bloc
     diagonal = diagonal + jnp.where(bare, 1.0, 0.0)[:, :, None] * jnp.eye(size)
     # What no sample has seen is damped like what one has, so that the step stays finite.
     seen = jnp.where(blocks.seen > 0.0, blocks.seen, 1.0)
-    return Blocks(
-        diagonal, blocks.below, blocks.border, blocks.corner, slope, blocks.slope_theta, blocks.cost, seen, blocks.seen_theta
-    )
+    return replace(blocks, diagonal=diagonal, slope=slope, seen=seen)
 
 
 def _first_remembered(problem: Problem, starts: Array) -> tuple[Array, Array, Array]:

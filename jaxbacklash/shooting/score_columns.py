@@ -15,7 +15,7 @@ import numpy as np
 
 from ..compiled import kept_jit
 from .damped_step import solve
-from .multiple_shooting import Columns, linearise, shoot
+from .multiple_shooting import Columns, assembled, meet, shoot
 from .problem import Problem, Unknowns
 
 Array = Any
@@ -47,8 +47,34 @@ def information_beside(
     more = -count % TOGETHER
     padded = (np.concatenate([value, np.zeros((more, *value.shape[1:]))]) for value in (torques, shown))
     lead = (np.ascontiguousarray(np.swapaxes(value, 0, 1)) for value in padded)
-    schur, score = map(np.asarray, _information(problem, unknowns, *lead))
+    schur, score, _ = map(np.asarray, _information(problem, unknowns, *lead))
     return schur[: q + count, : q + count], score[: q + count]
+
+
+def torque_scores(problem: Problem, unknowns: Unknowns) -> tuple[np.ndarray, np.ndarray]:
+    """How fast the cost of a fit falls with a torque on the link, by its values at `TOGETHER` times of each window.
+
+    Nothing makes up for a small torque to first order at a minimum, so that this is the gradient with all unknowns held. A torque
+    that is straight between those times has as its score the sum of its values times these.
+
+    Parameters
+    ----------
+    problem : with its q free parameters
+    unknowns : where a fit ended
+
+    Returns
+    -------
+    (W, K) and (W, K), the times [s] from a window's start to its end, alike apart, and the scores for 1 N m; of windows with data
+    """
+    w, count = problem.windows, np.shape(problem.windows.force)[0]
+    at, nodes = np.linspace(0.0, 1.0, np.shape(w.force)[1]), np.arange(TOGETHER)
+    hats = np.maximum(1.0 - np.abs(at * (TOGETHER - 1.0) - nodes[:, None]), 0.0)  # (K, P + 1)
+    torques = np.ascontiguousarray(np.broadcast_to(hats, (count, *hats.shape)))
+    shown = np.zeros((count, TOGETHER, np.shape(w.measured)[1]))
+    scores, used = -np.asarray(_information(problem, unknowns, torques, shown)[2]), int(w.used)
+    length = float(w.panel) * (at.size - 1)
+    times = np.asarray(w.t0)[:, None] + length / (TOGETHER - 1.0) * nodes
+    return times[:used], scores[:used]
 
 
 def ready(problem: Problem, unknowns: Unknowns) -> None:
@@ -58,7 +84,8 @@ def ready(problem: Problem, unknowns: Unknowns) -> None:
 
 
 @kept_jit
-def _information(problem: Problem, unknowns: Unknowns, torques: Array, shown: Array) -> tuple[Array, Array]:
-    blocks = linearise(problem, unknowns, shoot(problem, unknowns), Columns(torques, shown))
-    done = solve(blocks, jnp.asarray(0.0), problem.windows.used)
-    return done.schur, done.score
+def _information(problem: Problem, unknowns: Unknowns, torques: Array, shown: Array) -> tuple[Array, Array, Array]:
+    shot = shoot(problem, unknowns)
+    met = meet(problem, unknowns, shot, Columns(torques, shown))
+    done = solve(assembled(problem, unknowns, shot, met), jnp.asarray(0.0), problem.windows.used)
+    return done.schur, done.score, met.slope[:, -torques.shape[1] :]

@@ -25,7 +25,6 @@ class Bump:
         first = -8.0 * tau * base**3 / (reach * dt)
         second = (48.0 * tau**2 * base**2 - 8.0 * base**3) / (reach * dt) ** 2
         self._orders = base**4, first, second
-        self._times = tau * reach * dt
         self.stride = max(1, reach // 4)
 
     def against(self, values: np.ndarray, order: int = 0) -> np.ndarray:
@@ -36,8 +35,3 @@ class Bump:
     def loudness(self, order: int = 0) -> float:
         """Standard deviation of what `against` makes of white noise of deviation 1."""
         return float(np.linalg.norm(self._orders[order]))
-
-    def passes(self, hertz: np.ndarray) -> np.ndarray:
-        """Share of a sine that stays of it under the bump, by its frequency (F,) [Hz]."""
-        bump = self._orders[0]
-        return np.abs(np.cos(2.0 * np.pi * np.outer(hertz, self._times)) @ bump) / float(np.sum(bump))
