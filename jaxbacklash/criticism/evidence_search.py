@@ -13,9 +13,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from ..fitting.search import silent
-from ..fitting.settings import CLEAR_SHARE, CLOSE, MOST_FITTED, MOST_LAWS, PROMISING, SCATTER, SHARP, TIGHTEST
+from ..fitting.settings import CLEAR_SHARE, CLOSE, MOST_FITTED, MOST_LAWS, PROMISING, SCATTER, SHARP, SURE, TIGHTEST
 from .candidates import Candidate, share_of_rest, stepwise_selection
-from .evidence import demanded, leaves_noise, noise_too_large
+from .evidence import demanded, leaves_noise, most_of_noise, noise_too_large
 from .fitted_model import FittedModel
 from .force_test import compiling_aside
 from .model_fitter import ExhaustedError, ModelFitter
@@ -75,9 +75,11 @@ class EvidenceSearch:
         warnings.warn(said, stacklevel=3)
 
     def better_neighbour(self, model: FittedModel) -> FittedModel | None:
-        """The best model one move away, None where no move helps: additions first, then fewer laws, then other ones."""
+        """The best model one move away, None where no move helps: additions first, then fewer laws, then other ones, then another
+        model and one law."""
         for move, least in (
             (self.more_laws, self.demand), (self.one_law_fewer, -self.demand), (self.another_law, self.demand),
+            (self.rivals_and_one, self.demand),
         ):  # fmt: skip
             if (found := self._best(move, least, model)) is not None:
                 return found
@@ -174,6 +176,18 @@ class EvidenceSearch:
             others = self._with_each(without, screened, self._related(name), enough if leaves_noise(model) else 0.0)
             yield from (with_others_of(self.fitter, model, n) for n in others if n.names != model.names)
 
+    def rivals_and_one(self, model: FittedModel) -> Iterator[Neighbour]:
+        """The best other models whose misfit noise may be, each with the law that promises most beside it, if that makes it
+        likelier than the model kept: the search came past them where another law promised a little more."""
+        others = [m for m in self.fitter.fitted.values() if m.misfit < most_of_noise(m) and len(m.names) < MOST_LAWS]
+        others = [m for m in others if not (m.names <= model.names or m.names >= model.names)]
+        for rival in sorted(others, key=lambda m: m.criterion)[:MOST_FITTED]:
+            best = next(iter(self.screened(rival)), None)
+            if best is None or net_gain(best, self.fitter) < self.demand - self.evidence(model, rival):
+                continue
+            neighbour = with_law(self.fitter, rival, best)
+            yield neighbour if neighbour.near is not None else replace(neighbour, joint=neighbour.joint or rival.system)
+
     def _in_other_forms(self, model: FittedModel, name: str) -> Iterator[Neighbour]:
         """A fitted model with one of its laws in each of its other forms, unless that was looked at."""
         if (name, model.names, model.criterion) not in self._formed:
@@ -192,7 +206,7 @@ class EvidenceSearch:
         beside = {c.name: with_law(self.fitter, model, c) for c in candidates}
         yield from (n for n in beside.values() if n.names in self.fitter.fitted)
         for candidate in self._promising(model, candidates, beside, related):
-            if net_gain(candidate, self.fitter) < CLOSE * enough and candidate.name not in related:
+            if 0.0 < enough and net_gain(candidate, self.fitter) < CLOSE * enough and candidate.name not in related:
                 continue
             yield beside[candidate.name]
             fitted = self.fitter.fitted[beside[candidate.name].names]
@@ -222,7 +236,11 @@ class EvidenceSearch:
         known = {c.name: self.fitter.fitted.get(beside[c.name].names) for c in candidates}
         asked = [c for c in candidates if (m := known[c.name]) is None or self.evidence(model, m) > self.demand]
         least = max(self.demand, PROMISING * max((net_gain(c, self.fitter) for c in asked), default=0.0))
-        new = [c for c in asked if known[c.name] is None and net_gain(c, self.fitter) >= least]
+        untried = [c for c in asked if known[c.name] is None]
+        new = [c for c in untried if net_gain(c, self.fitter) >= least]
+        # A law that rings moves the resonance by more than a linear promise tells: where nothing else promises anything, it is
+        # fitted as soon as what it promises is no accident.
+        new = new or [c for c in untried if c.effect.rings and c.gain > SURE**2]
         # Of laws that records often cannot tell apart the most promising goes first.
         first = {self._family(c.name): c for c in reversed(new)}
         kept = [c for c in new if c.name in related or first[self._family(c.name)] is c]
@@ -237,18 +255,20 @@ class EvidenceSearch:
         return self.fitter.laws[name].family or name
 
     def _step(self, model: FittedModel, found: FittedModel) -> None:
-        """Note a move; of several laws that came together, one after another, the one first that explains more alone."""
+        """Note a move; of several laws that came together, one after another, the one first that explains more without them."""
         self._note_ranking()
-        gone = tuple(sorted(model.names - found.names))
         self.progress(f"{' + '.join(sorted(found.names)) or 'the joint alone'} explains more", 0.5)
+        budget, self.fitter.budget = self.fitter.budget, math.inf  # what has been found is told whole
         while len(new := sorted(found.names - model.names)) > 1:
             effects = self.fitter.effects(found)
-            beside = [
-                self.fitter.fit_model({**self.fitter.effects(model), name: effects[name]}, model) for name in new
-            ]  # fmt: skip
+            kept = {n: e for n, e in self.fitter.effects(model).items() if n in found.names}
+            near = found if model.names - found.names else model
+            beside = [self.fitter.fit_model({**kept, name: effects[name]}, near) for name in new]
             best = min(range(len(new)), key=lambda k: beside[k].criterion)
+            self.path.append(SearchStep(beside[best], new[best], tuple(sorted(model.names - found.names)), ()))
             model = beside[best]
-            self.path.append(SearchStep(model, new[best], (), ()))
+        self.fitter.budget = budget
+        gone = tuple(sorted(model.names - found.names))
         self.path.append(SearchStep(found, new[0] if new else None, gone, ()))
 
     def _note_ranking(self) -> None:

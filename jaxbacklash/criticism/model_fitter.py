@@ -13,7 +13,7 @@ from ..fitting.continuation import Continued, continued, in_one_run, sharpened, 
 from ..fitting.left_out import excess
 from ..fitting.search import silent
 from ..fitting.segment import segment
-from ..fitting.settings import EXPLAINED, LOOSE, LOOSEST, MEASURING, MOST_STEPS, ROUGHLY, SHARP, TIGHTEST
+from ..fitting.settings import EXPLAINED, FALLEN, LOOSE, LOOSEST, MEASURING, MOST_STEPS, ROUGHLY, SHARP, TIGHTEST
 from ..fitting.setup import first_guess, read_through
 from ..fitting.stick_slip import sticks_and_slips
 from ..mechanics import AbstractEffect
@@ -105,8 +105,21 @@ class ModelFitter(ModelBuilder):
         hard = any(e.slides or e.states for e in effects.values())
         richer = near is not None and near.names < frozenset(effects) and not hard
         first = LOOSEST if near is None else near.tie if richer or was is not None else min(near.tie, LOOSE)
-        found = continued(problem, unknowns, first=first, speeds=self.speeds(effects))
-        return self._keep(self._model(found, frozenset(effects), free))
+        speeds = self.speeds(effects)
+        model = self._model(continued(problem, unknowns, first=first, speeds=speeds), frozenset(effects), free)
+        if near is not None and near.names < model.names and first < near.tie and self._fell_behind(model, near):
+            # What contains a model fits no worse: another minimum was met on the way up from loose ties.
+            self._keep(model)
+            first = min(near.tie, SHARP) if speeds else near.tie
+            model = self._model(continued(problem, unknowns, first=first, speeds=speeds), frozenset(effects), free)
+        return self._keep(model)
+
+    def _fell_behind(self, model: FittedModel, near: FittedModel) -> bool:
+        """Whether a fit came to less evidence than that of a model it contains, with ties as tight as dry friction allows, by a
+        larger misfit or looser ties: where the misfit alone is smaller, no other minimum was met."""
+        most = SHARP if self.speeds(self.effects(model)) else TIGHTEST
+        behind = model.log_evidence < 0.5 * (near.penalty - near.criterion_at(min(near.tie, most))) - FALLEN
+        return behind and (model.cost > near.cost if model.tie == near.tie else model.tie < near.tie)
 
     def _other_side(self, problem: Problem, start: Unknowns, free: tuple[str, ...], speeds: dict[str, float]) -> Unknowns:
         """Unknowns of a drive of which motor or link is not seen, brought near to where that one was by a segment of the record,
