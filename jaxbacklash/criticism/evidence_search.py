@@ -206,7 +206,7 @@ class EvidenceSearch:
         beside = {c.name: with_law(self.fitter, model, c) for c in candidates}
         yield from (n for n in beside.values() if n.names in self.fitter.fitted)
         for candidate in self._promising(model, candidates, beside, related):
-            if 0.0 < enough and net_gain(candidate, self.fitter) < CLOSE * enough and candidate.name not in related:
+            if enough > 0.0 and net_gain(candidate, self.fitter) < CLOSE * enough and candidate.name not in related:
                 continue
             yield beside[candidate.name]
             fitted = self.fitter.fitted[beside[candidate.name].names]
