@@ -7,6 +7,7 @@ and the most promising are fitted; then each law is left out, then each is repla
 
 from __future__ import annotations
 
+import itertools
 import math
 import warnings
 from collections.abc import Callable, Iterator
@@ -76,10 +77,10 @@ class EvidenceSearch:
 
     def better_neighbour(self, model: FittedModel) -> FittedModel | None:
         """The best model one move away, None where no move helps: additions first, then fewer laws, then other ones, then another
-        model and one law."""
+        model and one law, then two other laws at once."""
         for move, least in (
             (self.more_laws, self.demand), (self.one_law_fewer, -self.demand), (self.another_law, self.demand),
-            (self.rivals_and_one, self.demand),
+            (self.rivals_and_one, self.demand), (self.two_other_laws, self.demand),
         ):  # fmt: skip
             if (found := self._best(move, least, model)) is not None:
                 return found
@@ -187,6 +188,16 @@ class EvidenceSearch:
                 continue
             neighbour = with_law(self.fitter, rival, best)
             yield neighbour if neighbour.near is not None else replace(neighbour, joint=neighbour.joint or rival.system)
+
+    def two_other_laws(self, model: FittedModel) -> Iterator[Neighbour]:
+        """The model with two of its laws replaced at once, where it was found that the record cannot tell either replacement from
+        the law that it replaces."""
+        for one, other in itertools.combinations(self.as_likely(model).values(), 2):
+            gone = model.names - one.names, model.names - other.names
+            came = one.names - model.names, other.names - model.names
+            if all((*gone, *came)) and not gone[0] & gone[1] and not came[0] & came[1]:
+                effects = self.fitter.effects(one) | self.fitter.effects(other) | self.fitter.effects(model)
+                yield Neighbour({n: effects[n] for n in model.names - gone[0] - gone[1] | came[0] | came[1]})
 
     def _in_other_forms(self, model: FittedModel, name: str) -> Iterator[Neighbour]:
         """A fitted model with one of its laws in each of its other forms, unless that was looked at."""
