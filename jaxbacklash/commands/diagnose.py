@@ -18,7 +18,7 @@ from ..fitting import fit as fit_records
 from ..fitting.result import causes_text
 from ..fitting.setup import add_effects
 from ..model_file import dump_model
-from ..records.both_encoders import require_relative, require_torque
+from ..records.not_taken import require_relative, require_torque
 from ..records.force import between
 from ..report.refine_result import candidates_json
 from ..report.result import as_json as result_of

@@ -16,7 +16,7 @@ from ..frames import dataframe
 from ..mechanics import AbstractEffect
 from ..parameters import free_specs, specs, values
 from ..precision import require_double_precision
-from ..records.both_encoders import require_torque
+from ..records.not_taken import require_torque
 from ..shooting.problem import Unknowns
 from ..showing import Shown
 from ..system import System

@@ -24,7 +24,7 @@ from ..fitting.settings import EXPLAINED
 from ..fitting.setup import as_stiff_as_can_be, base_system, free_names
 from ..precision import require_double_precision
 from ..records import Record, oriented
-from ..records.both_encoders import require_torque
+from ..records.not_taken import require_torque
 from ..records.findings.wide_play import wide_play
 from ..records.force import tell_way
 from ..records.relative_motion import check_answers

@@ -28,7 +28,7 @@ from ..parameters import unit_text, values, with_values
 from ..pointwise import along
 from ..precision import require_double_precision
 from ..records import Record
-from ..records.both_encoders import require_relative
+from ..records.not_taken import require_relative
 from ..shooting.multiple_shooting import Blocks, Trajectory
 from ..shooting.problem import Problem, Unknowns
 from ..showing import Shown

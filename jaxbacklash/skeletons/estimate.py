@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import BadInput
 from ..parameters import unit_text
 from ..records import Record
-from ..records.both_encoders import require_relative
+from ..records.not_taken import require_relative
 from ..signals import choose_intervals, fit_spline, highest_frequency
 from . import masks
 from .fundamental import Fundamental, hilbert_fundamental, wavelet_fundamental
