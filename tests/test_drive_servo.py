@@ -282,13 +282,6 @@ def test_command_and_torque_are_not_taken_for_each_other(written, tmp_path):
     assert "with command, which does not drive this model; wanted the torque at the motor" in told.err
 
 
-@pytest.mark.parametrize("command", ["refine", "diagnose"])
-def test_what_a_command_is_not_taken_for(command, written, tmp_path):
-    told = call([command, str(written()), "--ratio", "50"], tmp_path)
-    assert told.code == 2
-    assert f"the command of a servo and no torque, which {command} does not take so far; wanted the motor's torque" in told.err
-
-
 def test_a_servo_is_not_exported():
     with pytest.raises(jb.BadInput, match=r"follows a command by a servo .* jaxbacklash simulate"):
         jb.exported(servo(), "mjcf")

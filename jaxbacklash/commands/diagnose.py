@@ -18,8 +18,8 @@ from ..fitting import fit as fit_records
 from ..fitting.result import causes_text
 from ..fitting.setup import add_effects
 from ..model_file import dump_model
-from ..records.not_taken import require_relative, require_torque
 from ..records.force import between
+from ..records.not_taken import require_relative
 from ..report.refine_result import candidates_json
 from ..report.result import as_json as result_of
 from ..residuals import Findings, where_it_fails
@@ -47,7 +47,6 @@ def run(
         raise BadInput(f"--starts {starts}: wanted one or more")
     record = reading.record(path)
     require_relative([record], "diagnose")
-    require_torque(record, "diagnose")
     folder = out_folder(out)
     system = model_of_file(model, inertia)
     if system is not None:

@@ -15,7 +15,7 @@ from ..fitting.chance import explains
 from ..fitting.continuation import tied
 from ..fitting.counts import few_counts
 from ..fitting.estimates import inflation, judge
-from ..fitting.fit import ABSOLUTE, prepare
+from ..fitting.fit import prepare, scale_open
 from ..fitting.left_over import predict, why_open
 from ..fitting.result import Fit
 from ..fitting.score import Score
@@ -24,7 +24,6 @@ from ..fitting.settings import EXPLAINED
 from ..fitting.setup import as_stiff_as_can_be, base_system, free_names
 from ..precision import require_double_precision
 from ..records import Record, oriented
-from ..records.not_taken import require_torque
 from ..records.findings.wide_play import wide_play
 from ..records.force import tell_way
 from ..records.relative_motion import check_answers
@@ -94,7 +93,6 @@ def refine(
     (('gravity',), 'complete')
     """
     require_double_precision("refine")
-    require_torque(record, "refine")
     record = oriented(record)
     heldout = None if heldout is None else oriented(heldout)
     check_size([record] if heldout is None else [record, heldout])
@@ -111,7 +109,8 @@ def refine(
         names, model = free_names(system), "given"
     fitter = ModelFitter(record, system, names, window, beside=heldout)
     fitter.take_laws(laws_for(system, translational=translational))
-    per_inertia = inertia is None and record.kind not in ABSOLUTE and model != "given"
+    told = model == "given" and record.input_name != "command"
+    per_inertia = inertia is None and not told and scale_open(record, system)
     judged = _Judge(fitter, heldout, model, per_inertia, translational, start)
     clock["prepare"] = time.perf_counter()
     search = EvidenceSearch(fitter, progress)

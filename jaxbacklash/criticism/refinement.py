@@ -10,7 +10,7 @@ from ..causes import Cause
 from ..fitting import Fit, Score, measures, percent
 from ..fitting.chance import explains
 from ..fitting.estimates import line
-from ..fitting.result import DOUBTED, at_most
+from ..fitting.result import DOUBTED, at_most, without_inertia
 from ..frames import dataframe, known
 from ..parameters import channel_unit
 from ..showing import Shown
@@ -107,7 +107,7 @@ def text(refinement: Refinement) -> str:
     stages, fit = refinement.stages, refinement.fit
     lines = [refinement.verdict.text, "", fit.records[0].summary(), *noise_lines(fit), "", *_stages(stages), ""]
     if fit.per_inertia:
-        lines.append("no inertia was given: stiffness, damping and torques are per unit inertia")
+        lines.append(without_inertia(fit))
     note = doubted(refinement)
     lines.append("parameters, value +- standard error" + ("" if note else ", and 95 % interval"))
     for estimate in fit.parameters.values():

@@ -157,8 +157,7 @@ def fit(
     excess = inflation(found.misfit, scored[0], tied=found.tied, one_run=sticks_and_slips(system))
     covariance = excess * found.covariance
     stderr = dict(zip(names, np.sqrt(np.diag(covariance))))
-    unscaled = chosen[0].input_name == "command" and math.isclose(fitted.motor.motor_inertia, 1.0)  # type: ignore[union-attr]
-    per_inertia = inertia is None and (chosen[0].kind not in ABSOLUTE or unscaled)
+    per_inertia = inertia is None and scale_open(chosen[0], fitted)
     estimates = judge(
         fitted, names, stderr, chosen, per_inertia=per_inertia, translational=translational, covariance=covariance,
         explained=explains(scored, fitted) and joined(found.tied, fitted),
@@ -175,6 +174,13 @@ def fit(
         {name: at - before for (_, before), (name, at) in pairwise(marks)}, problem, unknowns,
         unknown_noise, alone,
     )  # fmt: skip
+
+
+def scale_open(record: Record, system: System) -> bool:
+    """Whether nothing in a record sets the scale of torques, where no inertia was given: it has no force, or it is of a servo's
+    command and the motor's inertia stands at 1."""
+    unscaled = record.input_name == "command" and math.isclose(system.motor.motor_inertia, 1.0)  # type: ignore[union-attr]
+    return record.kind not in ABSOLUTE or unscaled
 
 
 def _harder(

@@ -1,5 +1,4 @@
-"""What a record of a drive with one encoder, or without its torque, is not taken for: work that looks at the motion of link and
-base, and the search for laws."""
+"""What a record of a drive with one encoder is not taken for: work that looks at the motion of link and base."""
 
 from __future__ import annotations
 
@@ -28,23 +27,3 @@ def require_relative(records: Iterable[Record], what: str) -> None:
                 f"{record.path or 'the record'}: is of a drive with the encoder of the {record.observed_name} alone, which "
                 f"{what} does not take so far; wanted both encoders, or jaxbacklash fit, with laws by --effects"
             )
-
-
-def require_torque(record: Record, what: str) -> None:
-    """Refuse a record of a drive whose servo was told a command.
-
-    Parameters
-    ----------
-    record : to be worked on
-    what : which work it is that does not take one, as in "refine"
-
-    Raises
-    ------
-    BadInput
-        Naming the record and what takes it.
-    """
-    if record.input_name == "command":
-        raise BadInput(
-            f"{record.path or 'the record'}: has the command of a servo and no torque, which {what} does not take so far; wanted "
-            "the motor's torque or current, or jaxbacklash fit, with laws by --effects"
-        )

@@ -1,7 +1,8 @@
 r"""Weak-form regression on the motor of a drive: which laws at its port the measured motion of both sides speaks for.
 
 The joint cancels from the balance of the whole, :math:`J_m \ddot\theta + c_m \dot\theta - \tau + J \ddot y / N = \ldots`, so that
-what is left at the motor's port does not depend on play and stiffness. It proposes shapes of laws that feel the motor's angle, as
+what is left at the motor's port does not depend on play and stiffness. The torque is the measured one, or what the model's servo
+makes of its command along the measured motion. It proposes shapes of laws that feel the motor's angle, as
 `jaxbacklash.regression.weak_form` does of those that feel joint or link.
 """
 
@@ -9,10 +10,15 @@ from __future__ import annotations
 
 from typing import Any
 
+import jax
+import jax.numpy as jnp
 import numpy as np
 
+from ..compiled import kept_jit
 from ..effects.contact import Damper
+from ..effects.motor import Motor
 from ..mechanics import AbstractEffect
+from ..parameters import unravel
 from ..records import Record
 from ..system import System
 from .along_motion import Motion, own_tangents, smooth, torques
@@ -33,7 +39,9 @@ class MotorForm(WeakForm):
         self.motion = Motion(record.t, *smooth(record.t, angle), still, still, still)
         # By parts: the bump is even, so that its own first derivative takes the rate off with its sign changed.
         self.bend, self.speed = self.average(angle, 2), -self.average(angle, 1)
-        self.driven = self.average(centred(record.channels["torque"]))
+        given = centred(record.channels[record.input_name or "torque"])
+        # Under the bump what is held counts as its integral does, which samples alone take for larger by a twelfth of its bend.
+        self.given = given - np.gradient(np.gradient(given)) / 12.0
 
     def missing(self, system: System, free: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray]:
         """Missing torque at the motor under the bump (R,), and how it falls with each free parameter of the model (R, q)."""
@@ -44,9 +52,10 @@ class MotorForm(WeakForm):
         of_laws = tuple(n if "." in n else "" for n in free)  # not of the joint, which cancels
         on_link, by_load = torques(loads, seeds_of(loads, of_laws), self.link)
         at_motor, by_motor = self._own(system, free)
-        left = float(motor.motor_inertia) * self.bend + float(motor.motor_damping) * self.speed - self.driven
+        pushed, by_pushed = map(np.asarray, _pushed(motor, seeds_of(motor, free), self.given, self.motion.y, self.motion.dy))
+        left = float(motor.motor_inertia) * self.bend + float(motor.motor_damping) * self.speed - self.average(pushed)
         left = left + (inertia * self.acceleration - self.average(on_link)) / float(motor.ratio) - self.average(at_motor)
-        by = self.average(by_load / float(motor.ratio) + by_motor)
+        by = self.average(by_load / float(motor.ratio) + by_motor + by_pushed)
         told = {"motor_inertia": -self.bend, "motor_damping": -self.speed, "inertia": -self.acceleration / float(motor.ratio)}
         for j, name in enumerate(free):
             by[j] = told.get(name, by[j])
@@ -62,3 +71,16 @@ class MotorForm(WeakForm):
                 own: Any = own_tangents(law, system, seeds_of(law, mine), self.motion)
                 torque, columns = torque + own[0], columns + own[1]
         return torque, columns
+
+
+@kept_jit
+def _pushed(motor: Motor, seeds: Any, given: Any, th: Any, dth: Any) -> tuple[Any, Any]:
+    """Torque (N,) that a motor makes of what it is ``given`` (N,) at angle and speed ``th``, ``dth`` (N,), and how it changes
+    along ``seeds`` (q, p) of its parameters, (q, N)."""
+    vector = jnp.stack([jnp.asarray(leaf, dtype=th.dtype) for leaf in jax.tree.leaves(motor)])
+
+    def made(vector: Any) -> Any:
+        return unravel(motor, vector).pushed(given, th, dth) + jnp.zeros_like(th)
+
+    torque, push = jax.linearize(made, vector)
+    return torque, jax.vmap(push)(seeds)

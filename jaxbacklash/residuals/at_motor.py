@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..effects import Servo
 from ..records import Record
 from ..regression.motor_form import MotorForm
 from ..shooting.torque_input import channel_noise, torque_noise
@@ -25,12 +26,13 @@ MOSTLY = 0.5
 
 @dataclass(frozen=True)
 class AtMotor:
-    """A torque missing at the motor's port: ``rms`` and what ``noise`` would leave of it [N m]; ``by_direction``, the share of
-    its variance that goes with the direction in which the motor turns."""
+    """A torque missing at the motor's port: ``rms`` and what ``noise`` would leave of it [``unit``]; ``by_direction``, the share
+    of its variance that goes with the direction in which the motor turns."""
 
     rms: float
     noise: float
     by_direction: float
+    unit: str = "N m"
 
     @property
     def evident(self) -> bool:
@@ -39,18 +41,19 @@ class AtMotor:
 
     def __str__(self) -> str:
         goes = f"; {100 * self.by_direction:.0f} % of it goes with the direction in which the motor turns, as dry friction does"
-        return f"At the motor a torque of {self.rms:.3g} N m rms is missing{goes if self.by_direction > MOSTLY else ''}."
+        return f"At the motor a torque of {self.rms:.3g} {self.unit} rms is missing{goes if self.by_direction > MOSTLY else ''}."
 
 
-def missing_at_motor(system: System, free: tuple[str, ...], record: Record) -> AtMotor | None:
+def missing_at_motor(system: System, free: tuple[str, ...], record: Record, unit: str = "N m") -> AtMotor | None:
     """What is missing at the motor of a fitted drive, on average over a tenth of a second; None where there is no motor, or where
-    one side has no encoder or nothing measured the torque.
+    one side has no encoder.
 
     Parameters
     ----------
     system : as it was fitted
     free : the parameters that were
     record : of the drive
+    unit : of its torques
 
     Examples
     --------
@@ -59,7 +62,7 @@ def missing_at_motor(system: System, free: tuple[str, ...], record: Record) -> A
     At the motor a torque of 0.0543 N m rms is missing; 99 % of it goes with the direction in which the motor turns, ...
     """
     motor = system.motor
-    if motor is None or record.blind or record.input_name != "torque":
+    if motor is None or record.blind:
         return None
     form = MotorForm(record)
     left, by = form.missing(system, free)
@@ -70,6 +73,11 @@ def missing_at_motor(system: System, free: tuple[str, ...], record: Record) -> A
     share = float(rest @ apart) ** 2 / max(float(apart @ apart) * energy, 1e-300)
     whole = float(form.average(np.ones(record.samples))[0])
     of_link = float(system.inertia) / float(motor.ratio) * channel_noise(record, "link")
-    of_motor = float(motor.motor_inertia) * channel_noise(record, "motor")
-    noise = np.hypot(torque_noise(record) * form.loudness(0), np.hypot(of_link, of_motor) * form.loudness(2))
-    return AtMotor(float(np.sqrt(energy / rest.size)) / whole, float(noise) / whole, share)
+    counts = channel_noise(record, "motor")
+    of_motor = float(motor.motor_inertia) * counts
+    if isinstance(motor, Servo):  # its torque is made of the motor's angle and speed
+        of_torque = counts * np.hypot(float(motor.Kp) / float(motor.ratio) * form.loudness(0), float(motor.Kd) * form.loudness(1))
+    else:
+        of_torque = torque_noise(record) * form.loudness(0)
+    noise = np.hypot(of_torque, np.hypot(of_link, of_motor) * form.loudness(2))
+    return AtMotor(float(np.sqrt(energy / rest.size)) / whole, float(noise) / whole, share, unit)

@@ -116,7 +116,7 @@ def where_it_fails(fit: Fit, latent: Latent | None = None, surface: Surface | No
     seen = fit.records[0].kind == "transmitted"
     if latent is None:
         latent = missing_force(fit) if seen else missing_torque(fit)
-    at_motor = None if fit.adequate else missing_at_motor(fit.system, fit.free, fit.records[0])
+    at_motor = None if fit.adequate else missing_at_motor(fit.system, fit.free, fit.records[0], latent.unit)
     if at_motor is not None and not at_motor.evident:
         at_motor = None
     errors = fit.score.rms, fit.score.median

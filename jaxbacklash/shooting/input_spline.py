@@ -27,10 +27,13 @@ def lags(w: Windows, system: System, t0: Array) -> Array | None:
 
 
 def spline_input(w: Windows, lag: Array | None, local: Array) -> tuple[Array, Array]:
-    """Input and its rate at a window's panel edges, (P + 1,) each, from its ``local`` coefficients (m + 5,).
+    """Input and its rate at a window's panel edges, (P + 1,) each, from its ``local`` coefficients (m + 5,); the command of a
+    servo is there as it is.
 
     ``lag`` (P + 1,) [s] is that of the measured channel, None where no law makes it lag.
     """
+    if w.by_command:
+        return local, jnp.zeros_like(local)
     if not w.intervals:
         zero = jnp.zeros(w.basis.shape[1])
         return zero, zero
@@ -68,7 +71,10 @@ def input_tangents(problem: Problem, theta: Array, local: Array) -> tuple[Array,
 
 
 def local_coefficients(w: Windows, coefficients: Array) -> Array:
-    """Own coefficients and those that the window shares with the next, the first five of a quintic spline: (W, m + 5)."""
+    """Own coefficients and those that the window shares with the next, the first five of a quintic spline: (W, m + 5); where
+    there is a command, that at the panel edges (W, P + 1)."""
+    if w.by_command:
+        return w.command
     shared = w.basis.shape[2] - w.intervals
     if shared == 0:
         return coefficients

@@ -125,7 +125,7 @@ def _predict_all(problem: Problem, theta: Array, starts: Array, local: Array) ->
     samples = jax.tree.map(lambda v: v[:, : -1 : w.every], at)
     times = system.passed(w.t0[:, None] + w.panel * w.every * jnp.arange(w.samples), w.panel)[0]
     motion = jax.vmap(jax.vmap(system.output))(times, kept, samples).reshape(w.count, -1)
-    measured = local @ w.shown.T if local.shape[1] else jnp.zeros((w.count, 0))
+    measured = local @ w.shown.T if w.intervals else jnp.zeros((w.count, 0))
     return Prediction(motion, measured, end.T), states, u, du
 
 
@@ -290,7 +290,7 @@ def _meet(shared: tuple[Problem, Array, PlainMap | None], lead: tuple[Window, Sh
     gram = jnp.einsum("wir,wjr->wij", weighted, weighted)
     unseen = jnp.sum(weighted[:, :, -n:] ** 2, axis=2)  # what a tie adds is no sample, and would damp every step
     slope = jnp.einsum("wir,wr->wi", weighted, jnp.concatenate([shot.motion, shot.tie], axis=1))
-    if own.local.shape[1]:
+    if w.intervals:
         # The input's own samples meet its coefficients alone.
         scaled = w.shown * w.input_weight[:, :, None]
         by_itself = jnp.einsum("wri,wrj->wij", scaled, scaled)

@@ -29,11 +29,9 @@ MOVING, DRIVEN = 4, 6
 
 
 def drive(w: Windows, u: Array, du: Array, force: Array) -> Drive:
-    """The drive at a panel edge: ``u``, ``du`` is the splined input (base motion, force or torque at a motor) and its rate,
-    ``force`` exact, or the exact command that a servo holds from here on."""
-    if w.by_command:
-        return Drive(u, du, jnp.zeros_like(u), None, force)
-    if w.by_torque:
+    """The drive at a panel edge: ``u``, ``du`` is the splined input (base motion, force or torque at a motor) and its rate, or
+    the command that a servo holds from here on; ``force`` exact."""
+    if w.by_torque or w.by_command:
         return Drive(jnp.zeros_like(u), jnp.zeros_like(u), force, None, u)
     if w.by_force:
         return Drive(jnp.zeros_like(u), jnp.zeros_like(u), force + u, du)

@@ -51,14 +51,14 @@ class Windows(eqx.Module):
     ``t0`` (W,) start times [s]; ``measured`` (W, M); ``weight`` (W, M), 1/noise or 0 where there is no sample; ``tie`` (W,), 1
     where the window runs on into the next; ``input`` (W, R) measured input and ``input_weight`` (W, R), R = M samples and m - 1
     knots where its spline is to have no corner; ``shown`` (R, m+5) what the coefficients come to there; ``force`` (W, P+1) exact
-    force, or command, at panel edges; ``coefficients`` (W, m) start of the spline; ``basis`` (6, P+1, m+5) the splines and their
-    derivatives at panel edges; ``starts`` (2, W) position and speed of the link from the smoothed data; ``drop`` (2,) how sharply
-    ends tie to starts [1/rad, s/rad]; ``used`` how many windows, the first ones, hold data; ``told`` () how much of the variance
-    that ``input_weight`` stands for the input shows, 1 but for one as good as exact, which is given a little noise; ``by_force``
-    True when the spline is of the force, ``by_torque`` when it is of the torque at the motor of a drive: then it is of degree 0,
-    one coefficient a sample, for as long as the controller holds the torque; ``by_command`` when ``force`` is a command. Of C
-    channels ``measured`` and ``weight`` are (W, M C), the channels of a sample together; ``starts`` and ``drop`` then have the
-    motor's position and speed behind those of the link.
+    force at panel edges, ``command`` (W, P+1) that of a servo, (W, 0) without; ``coefficients`` (W, m) start of the spline;
+    ``basis`` (6, P+1, m+5) the splines and their derivatives at panel edges; ``starts`` (2, W) position and speed of the link
+    from the smoothed data; ``drop`` (2,) how sharply ends tie to starts [1/rad, s/rad]; ``used`` how many windows, the first
+    ones, hold data; ``told`` () how much of the variance that ``input_weight`` stands for the input shows, 1 but for one as good
+    as exact, which is given a little noise; ``by_force`` True when the spline is of the force, ``by_torque`` when it is of the
+    torque at the motor of a drive: then it is of degree 0, one coefficient a sample, for as long as the controller holds the
+    torque; ``by_command`` where there is a command. Of C channels ``measured`` and ``weight`` are (W, M C), the channels of a
+    sample together; ``starts`` and ``drop`` then have the motor's position and speed behind those of the link.
     """
 
     t0: Array
@@ -68,6 +68,7 @@ class Windows(eqx.Module):
     input: Array
     input_weight: Array
     force: Array
+    command: Array
     coefficients: Array
     basis: Array
     shown: Array
@@ -290,6 +291,7 @@ def _cut_one(record: Record, length: int, every: int, intervals: int, needed: in
             motion = fitted(record.t)
     force = np.zeros(1) if driver == "F" else force_edges(record, every)
     part["force"] = _force_rows(force, rows, length * every)
+    part["command"] = np.zeros((rows, 0))
     part["starts"] = _starts(record, motion, observed, length, t0)
     return part
 
@@ -321,7 +323,8 @@ def _cut_drive(record: Record, length: int, every: int, *_: Any) -> dict[str, An
         "input_noise": own,
         "told": 1.0,
         "coefficients": torque,
-        "force": _force_rows(np.repeat(pushed, every) if told else np.zeros(1), rows, length * every),
+        "force": _force_rows(np.zeros(1), rows, length * every),
+        "command": _force_rows(np.repeat(pushed, every), rows, length * every) if told else np.zeros((rows, 0)),
         "drop": 50.0 * np.concatenate([sharp / at_link, sharp / at_motor]),
         "starts": _drive_starts(record, length * dt, t0),
     }
