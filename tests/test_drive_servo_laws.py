@@ -15,10 +15,10 @@ from jaxbacklash.fitting.fit import prepare
 from jaxbacklash.fitting.setup import first_guess, make_problem
 from jaxbacklash.parameters import values, with_values
 from jaxbacklash.regression.motor_form import MotorForm
-from jaxbacklash.residuals.at_motor import missing_at_motor
+from jaxbacklash.residuals.at_motor import as_pushed, missing_at_motor
 from jaxbacklash.shooting.multiple_shooting import shoot
 from jaxbacklash.simulation import as_record
-from tests.independent.drives import random_rig
+from tests.independent.drives import followed, packed, random_rig, run_commanded
 
 from .in_process import call
 from .test_drive_servo import gains, per_motor, recorded, servo
@@ -79,8 +79,24 @@ def test_what_is_missing_at_the_motor_is_told_apart_from_noise(seed):
     assert 0.2 * friction < found.rms < friction
 
 
+@pytest.mark.parametrize("limited", [False, True])
+def test_a_command_as_the_torque_that_was_made_of_it(limited):
+    rig = random_rig(np.random.default_rng(5))
+    Kp, Kd, limit = gains(rig, limit_of(rig) if limited else 1e9)
+    record = recorded(rig, 5, 3.0, ("motor",), limit=limit)
+    pushed, free, same = as_pushed(servo(rig, limit if limited else None), (*FREE, "tmax"), record)
+    assert type(pushed.motor) is jb.Motor
+    assert free == ("inertia", "backlash", "stiffness", "damping", "motor_damping")
+    assert (same.input_name, same.observed_names, same.ratio) == ("torque", ("motor",), rig.ratio)
+    command = followed(rig, np.random.default_rng(5), 3.0, 1000.0)[0] / rig.ratio
+    states = run_commanded(packed(rig, {}), np.zeros(6), command, np.array([Kp, Kd, limit]), 1e-3, 100)
+    made = np.clip(Kp * (command - states[:, 0] / rig.ratio) - Kd * states[:, 1], -limit, limit)
+    told = same.channels["torque"] - (0.0 if limited else Kd * states[:, 1])
+    assert np.std(told - made) < 0.03 * np.std(made)  # half a sample apart
+
+
 @pytest.mark.slow
-def test_a_torque_on_the_link_beside_a_command():
+def test_a_torque_on_the_link_beside_a_command_and_one_at_the_motor_beside_a_torque():
     load, rig = 0.3, servo()
 
     def motion(system, record, change):
@@ -95,6 +111,29 @@ def test_a_torque_on_the_link_beside_a_command():
     found, bare = motion(rig, short(), loaded), motion(rig, short(), same)
     np.testing.assert_allclose(found, motion(rig.with_effects(Preload(load)), short(), same), atol=1e-9)
     assert np.max(np.abs(found - bare)) > 1e-4
+
+    pushed, _, record = as_pushed(rig, FREE, short())
+    more = record.replace(torque=record.channels["torque"] + 0.01)
+    at_motor = lambda windows: replace(windows, force=jnp.asarray(windows.force) + 0.01, at_motor=True)  # noqa: E731
+    there = jnp.asarray(prepare(pushed, [record], None)[0].weight) > 0.0
+    found, wanted = motion(pushed, record, at_motor), motion(pushed, more, same)
+    np.testing.assert_allclose(np.where(there, found, 0.0), np.where(there, wanted, 0.0), atol=1e-9)
+
+
+@pytest.mark.parametrize("what", ["diagnose", "missing_torque"])
+def test_the_link_alone_is_refused_in_a_sentence(what, tmp_path):
+    record = short()
+    seen = {"t": record.t, "torque": 1e-3 * np.sin(9.0 * record.t), "link": record.channels["link"]}
+    np.savetxt(tmp_path / "run.csv", np.stack(list(seen.values()), axis=1), delimiter=",", header=",".join(seen), comments="")
+    said = f"is of a drive with the encoder of the link alone, which {what} does not take so far; wanted the motor's encoder"
+    if what == "diagnose":
+        told = call([what, "run.csv", "--ratio", "50"], tmp_path)
+        assert told.code == 2
+        assert said in told.err.splitlines()[-1]
+        return
+    fit = jb.Fit(**dict.fromkeys(jb.Fit.__dataclass_fields__) | {"records": (jb.read_record(tmp_path / "run.csv", ratio=50.0),)})
+    with pytest.raises(jb.BadInput, match=said):
+        jb.missing_torque(fit)
 
 
 @pytest.mark.slow
@@ -124,7 +163,7 @@ def test_what_a_servo_lacks_is_named_from_what_it_was_told(seed, hidden, which):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("which", [("motor", "link")])
+@pytest.mark.parametrize("which", [("motor", "link"), ("motor",)])
 def test_where_a_servo_fails_at_the_door(which, tmp_path):
     rig = random_rig(np.random.default_rng(28))
     friction = 4.0 * rig.inertia / rig.ratio
@@ -138,5 +177,7 @@ def test_where_a_servo_fails_at_the_door(which, tmp_path):
     assert "goes with the direction in which the motor turns" in result["findings"][0]
     assert result["latent_torque"]["at_motor"]["by_direction"] > 0.5
     assert 0.2 * friction < rig.motor_inertia * result["latent_torque"]["at_motor"]["rms"] < 1.2 * friction
+    assert result["latent_torque"]["port"] == ("motor" if len(which) == 1 else "link")
     assert result["stages"][0]["candidates"][0]["name"] == "coulomb_motor"
+    assert len(which) == 2 or "does not tell the two apart" in result["findings"][1]
     assert (tmp_path / "why" / "report.html").exists()

@@ -140,14 +140,17 @@ def text(found: Refinement, last: Findings | None) -> str:
 
 
 def _worth_a_table(found: Refinement, last: Findings | None) -> Surface | None:
-    """What is missing, where it can be offered as a table: a force missing from a measured one is no torque on the link."""
-    surface = None if last is None or found.fit.records[0].kind == "transmitted" else last.surface
+    """What is missing, where it can be offered as a table: a force missing from a measured one is no torque on
+    the link, nor is one at the motor."""
+    elsewhere = found.fit.records[0].kind == "transmitted" or found.fit.records[0].blind
+    surface = None if last is None or elsewhere else last.surface
     return surface if surface is not None and surface.share > WORTH_A_TABLE else None
 
 
 def _look(found: Refinement, stage: int, tell: Any) -> Findings | None:
-    """Where one of the models fails; None where that cannot be told, as of a drive with one encoder."""
-    if found.stages[stage].fit.records[0].blind:
+    """Where one of the models fails; None where that cannot be told, as of a drive of which the link alone is seen."""
+    record = found.stages[stage].fit.records[0]
+    if record.blind and "motor" not in record.channels:
         return None
     tell("looking for the missing torque", 0.94)
     try:

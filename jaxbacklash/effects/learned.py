@@ -13,7 +13,7 @@ from ..parameters import Scalar
 
 COORDINATES = ("z", "dz", "y", "dy", "t", "deflection", "side")
 """What a learned torque may depend on; ``side`` is -1, 0, 1 for contact below, play, contact above."""
-UNITS = {"t": "s", "dz": "rad/s", "dy": "rad/s", "side": "1"}
+UNITS = {"t": "s", "dz": "rad/s", "dy": "rad/s", "dx": "rad/s", "side": "1"}
 
 
 def coordinate(name: str, now: Any) -> Any:

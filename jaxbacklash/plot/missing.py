@@ -11,7 +11,7 @@ from ..residuals.surface import LABELS
 from .drawing import Drawn, Where, empty, picture
 from .failures import misfit_and_torque, missing_torque_curve, missing_torque_in_time, missing_torque_surface
 
-SYMBOLS = {"dz": "z′", "dy": "y′"}
+SYMBOLS = {"dz": "z′", "dy": "y′", "dx": "x′"}
 TELLING = 0.1
 """Share of the ranks' variance that must lie between the bins of a coordinate before it is drawn."""
 

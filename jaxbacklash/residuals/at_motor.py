@@ -7,12 +7,15 @@ would leave of it. `where_it_fails` tells both.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 
+import equinox as eqx
 import numpy as np
 
-from ..effects import Servo
+from ..effects import LimitedServo, Motor, Servo
 from ..records import Record
+from ..regression.along_motion import smooth
 from ..regression.motor_form import MotorForm
 from ..shooting.torque_input import channel_noise, torque_noise
 from ..system import System
@@ -81,3 +84,24 @@ def missing_at_motor(system: System, free: tuple[str, ...], record: Record, unit
         of_torque = torque_noise(record) * form.loudness(0)
     noise = np.hypot(of_torque, np.hypot(of_link, of_motor) * form.loudness(2))
     return AtMotor(float(np.sqrt(energy / rest.size)) / whole, float(noise) / whole, share, unit)
+
+
+def as_pushed(system: System, free: Iterable[str], record: Record) -> tuple[System, tuple[str, ...], Record]:
+    """A fitted drive, its free parameters and its record, a servo's command as the torque that it has made of it.
+
+    What the servo makes of the error is the torque, and its gain on the speed the viscous friction of a motor that is pushed by
+    it; a limited one makes both. A drive whose torque was measured stays as it is.
+    """
+    servo = system.motor
+    if not isinstance(servo, Servo):
+        return system, tuple(free), record
+    # The command is held from one sample to the next, the motor moves on meanwhile.
+    angle, speed = (0.5 * (v + np.append(v[1:], v[-1])) for v in smooth(record.t, record.channels["motor"]))
+    limited = isinstance(servo, LimitedServo)
+    maker = servo if limited else replace(servo, Kd=0.0)
+    torque = np.asarray(maker.pushed(record.channels["command"], angle, speed))
+    rubs = servo.motor_damping if limited else servo.Kd
+    pushed = eqx.tree_at(lambda s: s.motor, system, Motor(servo.motor_inertia, rubs, servo.ratio))
+    own = [n for n in free if n not in ("motor_inertia", "motor_damping", "Kp", "Kd", "tmax")]
+    seen = {name: record.channels[name] for name in record.observed_names}
+    return pushed, (*own, "motor_damping"), replace(record, channels={"torque": torque, **seen})

@@ -15,7 +15,12 @@ from .failures import Dependence, depends
 from .latent import Latent, missing_torque
 from .surface import Surface, explain_torque
 from .transmitted import explain_force, missing_force
-from .words import NOISE, NONE_ON_LINK, headline, sentences
+from .words import NOISE, NONE_ON_LINK, NOT_APART, best_coordinates, headline, sentences
+
+OF_MOTOR = (("dx",), ("x",), ("t",), ("x", "dx"))
+"""Coordinates that a torque at the motor is held against."""
+TOGETHER = 4
+"""Values of it that are taken together where it is held against the motor's direction."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +30,8 @@ class Findings(Shown):
     Attributes: ``sentences`` for a person, most telling first; a single one where nothing fails; ``dependences`` every question
     that was asked (`Dependence`), strongest first; ``latent`` the missing torque, ``surface`` its best coordinates (None
     where no torque is missing on the link); ``misfit``, ``median`` of the prediction error over the noise; ``at_motor``, what is
-    missing at the motor of a drive, None where nothing is.
+    missing at the motor of a drive, None where nothing is. Of a drive of which the motor alone is seen all of it is told at the
+    motor.
     """
 
     sentences: tuple[str, ...]
@@ -71,6 +77,7 @@ class Findings(Shown):
             "rms": self.latent.rms if surface is None else surface.rms,
             "stderr": float(np.median(self.latent.stderr)),
             "unit": self.latent.unit,
+            "port": self.latent.port,
             "evident": self.latent.evident,
             "evidence": self.latent.evidence,
             "explained_by": [] if surface is None else list(surface.coordinates),
@@ -116,6 +123,8 @@ def where_it_fails(fit: Fit, latent: Latent | None = None, surface: Surface | No
     seen = fit.records[0].kind == "transmitted"
     if latent is None:
         latent = missing_force(fit) if seen else missing_torque(fit)
+    if latent.port == "motor":
+        return _of_the_motor_alone(fit, latent, surface)
     at_motor = None if fit.adequate else missing_at_motor(fit.system, fit.free, fit.records[0], latent.unit)
     if at_motor is not None and not at_motor.evident:
         at_motor = None
@@ -134,8 +143,31 @@ def where_it_fails(fit: Fit, latent: Latent | None = None, surface: Surface | No
     return Findings(told, tuple(asked), latent, surface, *errors, at_motor)
 
 
+def _of_the_motor_alone(fit: Fit, latent: Latent, surface: Surface | None) -> Findings:
+    """What a drive of which the motor alone is seen tells: the torque at the motor that would make up for all that is missing."""
+    numbers, errors = _numbers(fit, latent), (fit.score.rms, fit.score.median)
+    asked = tuple(depends(latent, latent.torque, _misfit(fit, latent)))
+    if not latent.evident:
+        return Findings((NOISE.format(**numbers),), asked, latent, None, *errors)
+    surface = surface or explain_force(latent, OF_MOTOR)
+    found = AtMotor(latent.rms, float(np.median(latent.stderr)), _by_direction(latent), latent.unit)
+    told = (f"The misfit is {numbers['error']}. {found}", NOT_APART, best_coordinates(surface))
+    return Findings(told, asked, latent, surface, *errors, found)
+
+
+def _by_direction(latent: Latent) -> float:
+    """Share of the missing torque's variance that goes with the direction in which the motor turns, beside its speed; on average
+    over a few values, which are rougher than the torque."""
+    count = latent.t.size // TOGETHER * TOGETHER
+    torque, speed = (v[:count].reshape(-1, TOGETHER).mean(axis=1) for v in (latent.torque, latent.dx))
+    plane = np.linalg.qr(np.stack([np.ones(speed.size), speed], axis=1))[0]
+    rest, apart = (v - plane @ (plane.T @ v) for v in (torque, np.sign(speed)))
+    return float((rest @ apart) ** 2 / max(float(apart @ apart) * float(rest @ rest), 1e-300))
+
+
 def _numbers(fit: Fit, latent: Latent) -> dict[str, Any]:
-    return {"error": error_in_words(fit.score), "bound": 2.0 * float(np.median(latent.stderr)), "unit": latent.unit}
+    bound, where = 2.0 * float(np.median(latent.stderr)), " at the motor" if latent.port == "motor" else ""
+    return {"error": error_in_words(fit.score), "bound": bound, "unit": latent.unit, "where": where}
 
 
 def _misfit(fit: Fit, latent: Latent) -> np.ndarray:
@@ -143,6 +175,8 @@ def _misfit(fit: Fit, latent: Latent) -> np.ndarray:
     found = np.zeros(latent.t.size)
     for number, score in enumerate(fit.scores):
         rows = latent.record == number
+        if not rows.any():  # of a drive the first record alone is looked at
+            continue
         t = latent.t[rows]
         near = np.clip(np.searchsorted(t, score.t + 0.5 * latent.spacing) - 1, 0, t.size - 1)
         count = np.maximum(np.bincount(near, minlength=t.size), 1)

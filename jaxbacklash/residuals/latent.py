@@ -8,19 +8,22 @@ differentiated and the band counts both noises.
 While an effect is missing, a fit bends play, stiffness and damping to cover part of it. So the parameters are estimated anew
 beside the torque (each within about half of its value): the torque is then what they cannot be, and how far they moved is told
 (Kennedy & O'Hagan, 2001, on why the two must be estimated together). ``hold`` keeps them as fitted.
+
+Of a drive of which the motor alone is seen the link is found along with the torque, which is sought at the motor.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
 import numpy as np
 
-from ..errors import NoAnswer
+from ..errors import BadInput, NoAnswer
 from ..fitting import Fit
+from ..fitting.continuation import continued
 from ..fitting.fit import prepare
 from ..fitting.setup import first_guess, free_names, make_problem
 from ..frames import dataframe
@@ -28,11 +31,12 @@ from ..parameters import unit_text, values, with_values
 from ..pointwise import along
 from ..precision import require_double_precision
 from ..records import Record
-from ..records.not_taken import require_relative
+from ..records.not_taken import require_motor
 from ..shooting.multiple_shooting import Blocks, Trajectory
 from ..shooting.problem import Problem, Unknowns
 from ..showing import Shown
 from ..system import System
+from .at_motor import as_pushed
 from .smoother import Improved, Point, Smoother, finish, improve, make_hats, misfit
 
 NODES = 10
@@ -47,6 +51,8 @@ CALMED = 5.0
 """A misfit of more noises than this may keep the search from arriving; factor by which the noise is taken for less each time."""
 NEAR = 5e-3
 """Half of a sum of squares, for each sample, that a search under such a noise may leave to gain."""
+BEGIN, ROUNDS = 0.1, 3
+"""Missing torque that is begun with where the motor alone is seen, as a share of the torque, and fits that find its size."""
 EVIDENT = 6.0
 """Gain in log marginal likelihood from which a torque counts as missing: odds of 400 to 1."""
 
@@ -72,7 +78,8 @@ class Latent(Shown):
     Attributes: ``t`` [s]; ``record`` (N,) which record; ``torque`` and its standard error ``stderr`` [unit]; ``y``, ``dy``,
     ``x``, ``dx``, ``z``, ``dz`` the smoothed motion [rad, rad/s]; ``deflection`` beyond the play [rad]; ``side`` -1, 0, 1 for
     contact below, play, contact above; ``evidence`` log marginal likelihood gained over no torque; ``system`` with the parameters
-    that go with this torque, ``moved`` their (value as fitted, value here, standard error here); ``converged``.
+    that go with this torque, ``moved`` their (value as fitted, value here, standard error here); ``converged``; ``port`` at which
+    it was sought, ``"link"`` or, of a drive of which the motor alone is seen, ``"motor"``.
     """
 
     t: np.ndarray
@@ -94,6 +101,7 @@ class Latent(Shown):
     unit: str
     records: tuple[Record, ...] = field(repr=False)
     inside: Inside = field(repr=False)
+    port: str = "link"
 
     @property
     def evident(self) -> bool:
@@ -130,6 +138,8 @@ class Latent(Shown):
 def missing_torque(fit: Fit, *, hold: bool = False) -> Latent:
     """The torque missing from a fitted model on its link, at its records; of a drive at the first of them.
 
+    Of a drive of which the motor alone is seen it is sought at the motor, where one that acts on the link shows as well.
+
     Parameters
     ----------
     fit : a fit
@@ -141,6 +151,8 @@ def missing_torque(fit: Fit, *, hold: bool = False) -> Latent:
 
     Raises
     ------
+    BadInput
+        A drive of which the link alone is seen.
     NoAnswer
         The smoother does not reach a finite misfit, or the model's own parameters leave the torque open.
 
@@ -151,7 +163,12 @@ def missing_torque(fit: Fit, *, hold: bool = False) -> Latent:
     >>> print(jb.missing_torque(fit))
     A torque of ... N m rms is missing, known to ...
     """
-    require_relative(fit.records, "missing_torque")
+    require_motor(fit.records, "missing_torque")
+    if fit.system.motor is not None and fit.records[0].blind:
+        unit = unit_text("N m", translational=fit.translational, per_inertia=fit.per_inertia)
+        if hold:
+            raise BadInput("hold: where the motor alone is seen, the parameters move with the torque; leave hold out")
+        return _at_motor(*as_pushed(fit.system, fit.free, fit.records[0]), unit)
     if fit.system.motor is not None:
         # On the link, which the motor moves as it was measured: what is missing at the motor's own port does not come into it.
         joint, record = fit.system.on_its_base(), fit.records[0].on_its_base()
@@ -175,17 +192,53 @@ def missing_torque_of(
     return _smooth(problem, first_guess(problem), system, free, (record,), unit, hold)
 
 
+def _at_motor(system: System, free: tuple[str, ...], record: Record, unit: str) -> Latent:
+    """The torque missing at the motor of a drive of which the motor alone is seen: where its link was is found along with it.
+
+    A fit takes the torque for as noisy as what is missing of it is large, and lets as much go where windows join as the record
+    likes; what it has then changed in the torque is what is missing. The band is the smoother's at that point.
+    """
+    windows, _, _ = prepare(system, [record], None)
+    problem = make_problem(system, windows, free)
+    unknowns, weight = first_guess(problem), np.asarray(windows.input_weight)
+    size = BEGIN * float(np.std(record.channels["torque"]))
+    seen = weight > 0.0
+    for _ in range(ROUNDS):
+        at = eqx.tree_at(lambda p: p.windows.input_weight, problem, np.where(seen, np.minimum(1.0 / size, weight), 0.0))
+        found = continued(at, unknowns)
+        unknowns = found.minimum.value
+        changed = np.where(seen, np.asarray(unknowns.coefficients) - np.asarray(windows.input), 0.0)
+        size = float(np.sqrt(np.sum(changed**2) / np.sum(seen)))
+    smoother = _smoother(eqx.tree_at(lambda p: p.windows, problem, replace(windows, at_motor=True)), system, unknowns, hold=False)
+    smoother = eqx.tree_at(lambda s: s.problem.tie, smoother, jnp.asarray(found.tie))
+    torque = changed.reshape(len(changed), smoother.nodes, -1).mean(axis=2) / float(smoother.unit)
+    still = Unknowns(unknowns.theta, unknowns.starts, np.asarray(windows.coefficients))
+    point = Point(still, jnp.asarray(torque))
+    sizes = np.tile(WIDE, 2)
+    for around in (WIDE, NARROW):
+        told = improve(smoother, point, jnp.asarray(np.repeat([1, 2], WIDE.size)), jnp.asarray(-2.0 * np.log(10.0) * sizes))
+        best = np.argmax(np.asarray(told.evidence).reshape(2, -1), axis=1)
+        sizes = np.concatenate([sizes.reshape(2, -1)[k, best[k]] + NARROW for k in range(2)]) if around is WIDE else sizes
+    return _latent(smoother, point, told, found.converged, system, free, (record,), unit)
+
+
 def _smooth(
     problem: Problem, start: Unknowns, system: System, free: tuple[str, ...], records: tuple[Record, ...], unit: str, hold: bool
 ) -> Latent:
     require_double_precision("missing_torque")
+    smoother, point, found, converged = _settled(_smoother(problem, system, start, hold=hold), start)
+    return _latent(smoother, point, found, converged, system, free, records, unit)
+
+
+def _smoother(problem: Problem, system: System, start: Unknowns, *, hold: bool) -> Smoother:
     w = problem.windows
     nodes = _nodes(w.samples)
     length = float(w.panel) * w.every * w.samples
     noise = 1.0 / float(np.max(np.asarray(w.weight)))
     # The unit is the torque that the noise of one sample would hide over one window.
-    scale = 2.0 * float(system.inertia) * noise / length**2
-    smoother = Smoother(
+    moved = system.motor.motor_inertia if w.at_motor and system.motor is not None else system.inertia
+    scale = 2.0 * float(moved) * noise / length**2
+    return Smoother(
         eqx.tree_at(lambda p: p.tie, problem, jnp.asarray(1.0)),
         jnp.asarray(make_hats(w.basis.shape[1] - 1, nodes)),
         jnp.asarray(scale),
@@ -193,8 +246,13 @@ def _smooth(
         start.theta,
         jnp.asarray(float(hold)),
     )
-    smoother, point, found, converged = _settled(smoother, start)
-    scale = float(smoother.unit)
+
+
+def _latent(
+    smoother: Smoother, point: Point, found: Improved, converged: bool, system: System, free: tuple[str, ...],
+    records: tuple[Record, ...], unit: str,
+) -> Latent:  # fmt: skip
+    problem, scale = smoother.problem, float(smoother.unit)
     spread, loose, path, linear = finish(smoother, point, found.best[0].astype(int), found.best[1])
     if not np.all(np.isfinite(np.asarray(spread)[np.asarray(smoother.present) > 0.0])):
         raise NoAnswer(
@@ -216,6 +274,7 @@ def _smooth(
         unit=unit,
         records=records,
         inside=Inside(smoother, point, path, linear, int(found.best[0]), float(np.exp(found.best[1])), free),
+        port="motor" if problem.windows.at_motor else "link",
     )
 
 
@@ -313,8 +372,9 @@ def _along(
         each = torque.shape[1]
         t = at[0] + (at[1] - at[0]) * per / each * np.arange((rows.stop - rows.start) * each)
         inside = t <= record.t[-1] + 1e-9
-        found = [np.interp(t, at, np.asarray(v)[rows].ravel()) for v in (*path.states[:2], path.drive.x, path.drive.dx)]
-        now = along(system, t, *found).now
+        base = system.base(path.states, path.drive.x, path.drive.dx)
+        found = [np.interp(t, at, np.asarray(v)[rows].ravel()) for v in (*path.states[:2], *base)]
+        now = along(system.on_its_base(), t, *found).now
         part = {
             "t": t, "record": np.full(t.size, number), "torque": torque[rows].ravel(), "stderr": stderr[rows].ravel(),
             **{name: np.broadcast_to(np.asarray(getattr(now, name)), t.shape) for name in MOTION},

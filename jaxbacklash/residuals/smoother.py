@@ -32,7 +32,6 @@ from ..shooting.multiple_shooting import (
     trajectory,
 )
 from ..shooting.problem import Problem, Unknowns
-from ..signals import DEGREE
 
 Array = Any
 RIDGE = 1e-10
@@ -88,9 +87,11 @@ def make_hats(panels: int, nodes: int) -> np.ndarray:
     return np.maximum(0.0, 1.0 - np.abs(at[:, None] - np.arange(nodes + 1)))
 
 
-def _places(n: int, m: int, nodes: int) -> tuple[np.ndarray, np.ndarray]:
-    # Those that the window before sees too come first: five coefficients of the spline, then one value of the torque.
-    shared = min(m, DEGREE)
+def _places(s: Smoother, n: int) -> tuple[np.ndarray, np.ndarray]:
+    # Those that the window before sees too come first: five coefficients of the spline, none of a held torque, then one value of
+    # the torque.
+    m, nodes = s.problem.windows.intervals, s.nodes
+    shared = s.problem.windows.basis.shape[2] - m
     spline = np.concatenate([n + np.arange(shared), n + 1 + np.arange(shared, m), n + m + nodes + np.arange(shared)])
     torque = np.concatenate([[n + shared], n + m + np.arange(1, nodes), [n + m + nodes + shared]])
     return spline.astype(int), torque.astype(int)
@@ -106,7 +107,7 @@ def linearise(s: Smoother, at: Point) -> Blocks:
     problem, u, w = s.problem, at.unknowns, s.problem.windows
     n, m, nodes, q = u.starts.shape[0], w.intervals, s.nodes, u.theta.shape[0]
     spline, torque = _locals(s, at)
-    in_spline, in_torque = _places(n, m, nodes)
+    in_spline, in_torque = _places(s, n)
     own = n + spline.shape[1] + torque.shape[1]
     seeds = jnp.eye(own + q)
 
@@ -190,13 +191,13 @@ def _factored(information: Array, alone: Array) -> Array:
 
 def torque_places(s: Smoother, at: Point) -> np.ndarray:
     """Where a window's own torque values stand among its unknowns, (K,)."""
-    return _places(at.unknowns.starts.shape[0], s.problem.windows.intervals, s.nodes)[1][: s.nodes]
+    return _places(s, at.unknowns.starts.shape[0])[1][: s.nodes]
 
 
 def prior(s: Smoother, at: Point) -> tuple[Array, Array, Array, Array]:
     """Diagonal, below (3, W, B, B), slope (3, W, B) and squared size (3,) of the differences of order 0, 1 and 2."""
     n, m, nodes = at.unknowns.starts.shape[0], s.problem.windows.intervals, s.nodes
-    place = np.eye(n + m + nodes)[:, _places(n, m, nodes)[1][:nodes]]
+    place = np.eye(n + m + nodes)[:, _places(s, n)[1][:nodes]]
     following = jnp.concatenate([at.torque[1:], jnp.zeros_like(at.torque[:1])])
     both = jnp.concatenate([at.torque, following], axis=1)
     found = []
@@ -249,7 +250,7 @@ def improve(s: Smoother, at: Point, orders: Array, log_precisions: Array) -> Imp
     local = done.eliminated.local(done.theta)
     u = at.unknowns
     n, m, nodes = u.starts.shape[0], s.problem.windows.intervals, s.nodes
-    in_spline, in_torque = _places(n, m, nodes)
+    in_spline, in_torque = _places(s, n)
     theta = jnp.clip(u.theta + done.theta, s.problem.lower, s.problem.upper)
     moved = Unknowns(theta, u.starts + local[:, :n].T, u.coefficients + local[:, in_spline[:m]])
     best = jnp.stack([orders[index].astype(float), log_precisions[index]])
@@ -273,8 +274,7 @@ def finish(s: Smoother, at: Point, order: Array, log_precision: Array) -> tuple[
     precision = jnp.exp(log_precision)
     scaled = precision * diagonal[order], precision * below[order], precision * slope[order]
     done = solve(linear, *scaled, s.problem.windows.used)
-    n, m, nodes = at.unknowns.starts.shape[0], s.problem.windows.intervals, s.nodes
-    place = _places(n, m, nodes)[1][:nodes]
+    place = torque_places(s, at)
     factor = done.eliminated.factor
     reach = solve_upper(factor, done.eliminated.halfway[:, :, :-1])
     through = jnp.einsum("wbi,ij->wbj", reach[:, place], jnp.linalg.inv(done.schur).T)

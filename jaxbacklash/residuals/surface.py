@@ -27,6 +27,7 @@ from .tables import at_times, basis_at_nodes, choose_knots, motions_of, smoothne
 
 LABELS = {
     "z": "the relative angle z", "dz": "the relative speed z'", "y": "the absolute angle y", "dy": "the absolute speed y'",
+    "x": "the motor's angle behind its gear", "dx": "the motor's speed behind its gear",
     "t": "time", "deflection": "the deflection beyond the play", "side": "the side of the play",
 }  # fmt: skip
 SETS = (

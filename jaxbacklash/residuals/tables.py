@@ -30,7 +30,7 @@ def choose_knots(latent: Latent, name: str, dimensions: int) -> tuple[float, ...
     at = np.linspace(0.0, 1.0, count)
     if name in ("t", "deflection"):
         knots = low + (high - low) * at
-    elif name in ("dz", "dy") and low < 0.0 < high:
+    elif name in ("dz", "dy", "dx") and low < 0.0 < high:
         # A pair close to zero lets the torque jump where the motion reverses.
         half = count // 2
         outer = np.geomspace(0.01, 1.0, half) if half > 3 else np.array([0.01, 0.3, 1.0])

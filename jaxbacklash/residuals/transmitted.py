@@ -62,6 +62,7 @@ def missing_force(fit: Fit) -> Latent:
         **found, evidence=0.0 if fit.adequate else surplus, converged=True, system=fit.system, moved={},
         unit=unit_text("N m", translational=fit.translational), records=fit.records,
         inside=cast(Any, None),  # nothing was smoothed
+        port="link",
     )  # fmt: skip
 
 
@@ -76,14 +77,14 @@ def _along(problem: Problem, unknowns: Unknowns) -> tuple[Any, tuple[Any, ...], 
     return path.times, (path.states[0], path.states[1], path.drive.x, path.drive.dx), force
 
 
-def explain_force(latent: Latent) -> Surface:
-    """The coordinates that explain a missing force best: tables over one or two of them, by least squares, judged on stretches
-    that they were not made from."""
-    now = along(latent.system, latent.t, latent.y, latent.dy, latent.x, latent.dx).now
+def explain_force(latent: Latent, sets: tuple[tuple[str, ...], ...] = SETS) -> Surface:
+    """The coordinates that explain a missing force best, or a torque at the motor: tables over one or two of them, by least
+    squares, judged on stretches that they were not made from."""
+    now = along(latent.system.on_its_base(), latent.t, latent.y, latent.dy, latent.x, latent.dx).now
     weight = weights(latent, latent.torque)
     size = 3.0 * latent.rms
     tried = []
-    for names in [n for n in SETS if varies(latent, n)] or [("t",)]:
+    for names in [n for n in sets if varies(latent, n)] or [("t",)]:
         knots = tuple(choose_knots(latent, name, len(names)) for name in names)
         phi = basis_along(names, knots, now)
         penalty = smoothness(tuple(len(row) for row in knots)) / size**2
@@ -100,6 +101,7 @@ def explain_force(latent: Latent) -> Surface:
         best = tried[0]
     share, _, names, knots, table, spread, fitted = best
     return Surface(
-        names, knots, table, spread, share, tuple((entry[2], entry[0], entry[1]) for entry in tried), {}, latent.torque, fitted,
+        names, knots, table, spread, share, tuple((entry[2], entry[0], entry[1]) for entry in tried),
+        {name: (before, here) for name, (before, here, _) in latent.moved.items()}, latent.torque, fitted,
         np.stack([getattr(latent, name) for name in names], axis=1), latent.system, latent.unit,
     )  # fmt: skip

@@ -10,8 +10,12 @@ from ..fitting import Fit, error_in_words
 from .failures import PLACES, Dependence
 from .surface import Surface
 
-NOISE = "What is left is noise: the error is {error}, and no torque is missing beyond {bound:.2g} {unit}."
+NOISE = "What is left is noise: the error is {error}, and no torque is missing{where} beyond {bound:.2g} {unit}."
 NONE_ON_LINK = "On the link no torque is missing beyond {bound:.2g} {unit}."
+NOT_APART = (
+    "The torque is told at the motor: one that acts on the link shows there as well, and the motor's encoder alone does not tell "
+    "the two apart."
+)
 STRONG = 0.1
 """Share of the variance of ranks below which a dependence is not worth a sentence."""
 
@@ -31,7 +35,7 @@ def headline(fit: Fit, surface: Surface) -> str:
 
 def sentences(surface: Surface, asked: Sequence[Dependence]) -> list[str]:
     """One sentence for the best coordinates, one for the place, and one for each further telling dependence."""
-    told = [_explained(surface)]
+    told = [best_coordinates(surface)]
     found = {(d.coordinate, d.of): d for d in asked if d.significant and d.strength > STRONG}
     place = found.get(("place", "size")) or found.get(("place", "value"))
     if place is not None:
@@ -47,7 +51,8 @@ def sentences(surface: Surface, asked: Sequence[Dependence]) -> list[str]:
     return [text for text in told if text]
 
 
-def _explained(surface: Surface) -> str:
+def best_coordinates(surface: Surface) -> str:
+    """What a missing torque depends on."""
     if surface.share < 0.3:
         return f"No coordinate that was tried explains it: the best table predicts only {100 * surface.share:.0f} % of it."
     return str(surface)

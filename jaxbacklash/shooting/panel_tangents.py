@@ -30,7 +30,9 @@ MOVING, DRIVEN = 4, 6
 
 def drive(w: Windows, u: Array, du: Array, force: Array) -> Drive:
     """The drive at a panel edge: ``u``, ``du`` is the splined input (base motion, force or torque at a motor) and its rate, or
-    the command that a servo holds from here on; ``force`` exact."""
+    the command that a servo holds from here on; ``force`` exact, on the link or at the motor."""
+    if w.at_motor:
+        return Drive(jnp.zeros_like(u), jnp.zeros_like(u), jnp.zeros_like(u), None, u + force)
     if w.by_torque or w.by_command:
         return Drive(jnp.zeros_like(u), jnp.zeros_like(u), force, None, u)
     if w.by_force:

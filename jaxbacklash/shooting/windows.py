@@ -57,8 +57,9 @@ class Windows(eqx.Module):
     ones, hold data; ``told`` () how much of the variance that ``input_weight`` stands for the input shows, 1 but for one as good
     as exact, which is given a little noise; ``by_force`` True when the spline is of the force, ``by_torque`` when it is of the
     torque at the motor of a drive: then it is of degree 0, one coefficient a sample, for as long as the controller holds the
-    torque; ``by_command`` where there is a command. Of C channels ``measured`` and ``weight`` are (W, M C), the channels of a
-    sample together; ``starts`` and ``drop`` then have the motor's position and speed behind those of the link.
+    torque; ``by_command`` where there is a command; ``at_motor`` where ``force`` acts on the motor of a drive that is pushed by
+    a torque, not on its link. Of C channels ``measured`` and ``weight`` are (W, M C), the channels of a sample together;
+    ``starts`` and ``drop`` then have the motor's position and speed behind those of the link.
     """
 
     t0: Array
@@ -81,6 +82,7 @@ class Windows(eqx.Module):
     by_force: bool = eqx.field(static=True)
     by_torque: bool = eqx.field(static=True, default=False)
     by_command: bool = eqx.field(static=True, default=False)
+    at_motor: bool = eqx.field(static=True, default=False)
 
     @property
     def count(self) -> int:
@@ -199,7 +201,7 @@ def cut(
         shown=np.eye(length) if driver == "torque" else _shown(length, intervals, needed), drop=drop,
         panel=np.asarray(panel), every=every, starts=starts,
         used=np.asarray(sum(counts)), told=np.mean([p["told"] for p in parts]), by_force=driver == "F",
-        by_torque=driver == "torque", by_command=lead.input_name == "command", **stacked,
+        by_torque=driver == "torque", by_command=lead.input_name == "command", at_motor=False, **stacked,
     )  # fmt: skip
     layout = Layout(
         first=tuple(int(v) for v in np.cumsum([0, *counts[:-1]])),
