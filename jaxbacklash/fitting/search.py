@@ -205,11 +205,11 @@ def _one_trajectory(problem: Problem, start: Unknowns) -> Continued | None:
         return None
     at, beside = tied(problem, TIGHTEST), tied(problem, JOINED)
     # Nearly free windows end close to tied ones: a damped step would only fight the ties, which are stiff.
-    minimum = minimise(at, start, Levenberg(limit=BETWEEN, atol=CLOSELY, damping=1e-9))
+    minimum = minimise(at, start, Levenberg(limit=BETWEEN, atol=CLOSELY, damping=1e-9, beside=JOINED))
     count, steps = freedom(problem, tied=True), int(minimum.stats["steps"])
     if steps >= BETWEEN or not 2.0 * float(minimum.stats["cost"]) < most_of_noise(count, LIKELY) ** 2 * count:
         return None
-    looser, height = minimise(beside, minimum.value, Levenberg(limit=1)), log_evidence(at, minimum)
+    looser, height = minimum.beside, log_evidence(at, minimum)
     # Near a minimum a step keeps what it promises; a promise that is too large only sends the fit the longer way.
     likelier = log_evidence(beside, looser) + float(looser.stats["promise"]) - height
     if likelier > WITHIN_CHANCE:

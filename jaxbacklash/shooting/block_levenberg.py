@@ -16,6 +16,7 @@ import optimistix as optx
 
 from .damped_step import solve
 from .multiple_shooting import Blocks, Prediction, Shot, linearise
+from .other_ties import loosened
 from .problem import Problem, Unknowns
 
 Array = Any
@@ -50,13 +51,14 @@ class BlockLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
     """Levenberg-Marquardt that solves the normal equations by blocks, within bounds.
 
     ``fn`` is `jaxbacklash.shooting.multiple_shooting.residual_rows`, which returns the `Shot` beside the rows; `linearise`
-    takes its Jacobian. The first four are those of `jaxbacklash.shooting.levenberg.Levenberg`.
+    takes its Jacobian. The first five are those of `jaxbacklash.shooting.levenberg.Levenberg`.
     """
 
     rtol: Array = 0.0
     atol: Array = 1e-3
     damping: Array = 1e-3
     limit: Array = 60
+    beside: Array = 0.0
     norm: Any = eqx.field(default=optx.max_norm, static=True)
 
     def init(self, fn: Any, y: Unknowns, args: Problem, options: Any, f_struct: Any, aux_struct: Shot, tags: Any) -> SearchState:
@@ -114,10 +116,23 @@ class BlockLevenbergMarquardt(optx.AbstractLeastSquaresSolver):
     def postprocess(
         self, fn: Any, y: Unknowns, aux: Any, args: Problem, options: Any, state: SearchState, tags: Any, result: Any
     ) -> Any:
-        undamped = solve(state.blocks, jnp.asarray(0.0), args.windows.used, _room(args, y.theta))
-        stats = {"cost": state.blocks.cost, "predicted": state.predicted, "steps": state.steps, "stalled": _stalled(state)}
-        told = {"schur": undamped.schur, "score": undamped.score, "promise": undamped.promise}
-        return y, aux, stats | told | {"log_determinant": undamped.log_determinant}
+        def undamped(blocks: Blocks) -> dict[str, Array]:
+            found = solve(blocks, jnp.asarray(0.0), args.windows.used, _room(args, y.theta))
+            told = {"cost": blocks.cost, "schur": found.schur, "score": found.score, "promise": found.promise}
+            return told | {"log_determinant": found.log_determinant}
+
+        def look(k: Array, found: dict[str, Array]) -> dict[str, Array]:
+            looser = lambda: loosened(args, y, state.predicted, state.blocks, self.beside)  # noqa: E731
+            told = undamped(jax.lax.cond(k == 0, lambda: state.blocks, looser))
+            return {name: found[name].at[k].set(value) for name, value in told.items()}
+
+        # With these ties and with looser ones in turns, not by a copy of the code: compiling is what costs here.
+        shapes = eqx.filter_eval_shape(undamped, state.blocks)
+        both = {name: jnp.full((2, *s.shape), jnp.nan, s.dtype) for name, s in shapes.items()}
+        both = jax.lax.fori_loop(0, jnp.where(jnp.asarray(self.beside) > 0.0, 2, 1), look, both)
+        stats = {"predicted": state.predicted, "steps": state.steps, "stalled": _stalled(state)}
+        stats |= {name: value[0] for name, value in both.items()} | {"beside": {name: value[1] for name, value in both.items()}}
+        return y, aux, stats
 
 
 def _stalled(state: SearchState) -> Array:

@@ -48,7 +48,7 @@ class Blocks(eqx.Module):
 
     ``diagonal`` (W, B, B); ``below`` (W, B, B) couples window w + 1 (rows) to window w (columns); ``border`` (W, B, q);
     ``corner`` (q, q); ``slope`` (W, B) and ``slope_theta`` (q,) gradients; ``cost`` half the sum of squares; ``seen`` (W, B)
-    and ``seen_theta`` (q,), the diagonal as far as it comes from samples and not from ties.
+    and ``seen_theta`` (q,), the diagonal as far as it comes from samples and not from ties; ``ends`` (W, U, n) as `Met.end_rows`.
     """
 
     diagonal: Array
@@ -60,6 +60,7 @@ class Blocks(eqx.Module):
     cost: Array
     seen: Array = None
     seen_theta: Array = None
+    ends: Array = None
 
 
 class Prediction(eqx.Module):
@@ -225,7 +226,7 @@ def assembled(problem: Problem, unknowns: Unknowns, shot: Shot, met: Met) -> Blo
     n, m = unknowns.starts.shape[0], problem.windows.intervals
     q = met.slope.shape[1] - n - problem.windows.basis.shape[2]
     blocks = assemble(met.gram, met.slope, met.end_rows, shot.tie, met.tie_weight, met.seen, n, m, q, shot.cost)
-    return _ridge(problem, unknowns, blocks, n)
+    return _ridge(problem, unknowns, replace(blocks, ends=met.end_rows), n)
 
 
 def _windows(problem: Problem, unknowns: Unknowns) -> Window:
@@ -351,8 +352,7 @@ def assemble(
 
 def _ridge(problem: Problem, unknowns: Unknowns, blocks: Blocks, n: int) -> Blocks:
     w = problem.windows
-    level = _whisper(w)
-    change = unknowns.coefficients - w.coefficients
+    level, change = _whisper(w), unknowns.coefficients - w.coefficients
     _, gradient, curvature = _first_remembered(problem, unknowns.starts.T)
     slope = blocks.slope + jnp.concatenate([gradient, level * change], axis=1)
     size = blocks.diagonal.shape[1]
