@@ -139,9 +139,9 @@ def fit(
     problem, unknowns = found.problem, found.unknowns
     fitted = with_values(system, dict(zip(values(system), np.asarray(problem.parameters(unknowns.theta)))))
 
-    scored, _ = score(problem, begin_anew(problem, unknowns.theta), layout, group=group)
+    scored, at = score(problem, begin_anew(problem, unknowns.theta), layout, group=group)
     if not sticks_and_slips(system):
-        settled = settle_noise(found, layout, scored, chosen, group)
+        settled = settle_noise(found, layout, scored, at, chosen, group)
         if settled.found is not found:
             found, layout, scored = settled.found, settled.layout, settled.scored
             problem, unknowns = found.problem, found.unknowns

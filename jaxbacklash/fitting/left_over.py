@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..one_encoder import one_side
 from ..records import Record
-from ..shooting.problem import Problem, changed
+from ..shooting.problem import Problem, Unknowns, changed
 from ..shooting.windows import Layout, Windows
 from ..signals import estimate_noise, rounding_noise
 from .score import Score, begin_anew, score
@@ -25,7 +26,9 @@ if TYPE_CHECKING:
     from .search import Found
 
 
-def settle_noise(found: Found, layout: Layout, scored: Sequence[Score], records: Sequence[Record], group: int) -> Settled:
+def settle_noise(
+    found: Found, layout: Layout, scored: Sequence[Score], at: Unknowns, records: Sequence[Record], group: int
+) -> Settled:
     """A fit made anew, as long as it leaves less than the noise that it was made with; the same where it does not.
 
     Parameters
@@ -33,6 +36,7 @@ def settle_noise(found: Found, layout: Layout, scored: Sequence[Score], records:
     found : where the search ended
     layout : where each record sits among the windows, and its noise
     scored : the scores of the fit, one a record
+    at : the windows' starts with which they were scored
     records : the records, which tell how finely their values were written
     group : shooting windows per score window
     """
@@ -43,7 +47,10 @@ def settle_noise(found: Found, layout: Layout, scored: Sequence[Score], records:
         layout = replace(layout, noise=tuple(f * n for f, n in zip(factors, layout.noise)))
         problem = changed(found.problem, windows=_noisier(found.problem.windows, layout, factors))
         found = found.again(problem)
-        scored, _ = score(problem, begin_anew(problem, found.unknowns.theta), layout, group=group)
+        # Windows begun from the data have come near their starts already, but where a side is not seen ever anew.
+        begin = Unknowns(found.unknowns.theta, at.starts, at.coefficients)
+        begin = begin_anew(problem, begin.theta) if one_side(problem.system) else begin
+        scored, at = score(problem, begin, layout, group=group)
     return Settled(found, layout, tuple(scored))
 
 
