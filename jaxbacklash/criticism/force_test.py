@@ -32,8 +32,9 @@ from .perturbed import answered, model_record, panel_edges, parabola
 @contextlib.contextmanager
 def compiling_aside(fitter: ModelFitter) -> Iterator[None]:
     """Within it another thread compiles the program of `ForceTest`, or reads it, while the joint is fitted alone; where no law
-    that remembers may be asked, nothing."""
-    if fitter.weak_form.blind or not any(law.states for law in fitter.laws.values()):
+    that remembers, or is a sine over time, may be asked, nothing."""
+    remembers = not fitter.weak_form.blind and any(law.states for law in fitter.laws.values())
+    if not remembers and not any(law.wave is not None and law.wave.over == "t" for law in fitter.laws.values()):
         yield
         return
     problem = fitter.problem({}, fitter.base)[0]
