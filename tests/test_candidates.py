@@ -5,6 +5,8 @@ import pytest
 
 from jaxbacklash.criticism.candidates import likeliest_sine, predicted_gain, score_test
 from jaxbacklash.criticism.evidence import gain
+from jaxbacklash.criticism.perturbed import model_record
+from jaxbacklash.shooting.multiple_shooting import Prediction
 
 from .hidden import fitter, hidden, noisier
 
@@ -13,6 +15,18 @@ def test_a_candidate_whose_trajectory_runs_away_promises_nothing():
     step, fall = predicted_gain(np.array([[1.0, np.inf], [np.inf, 2.0]]), np.array([1.0, 1.0]), 1)
     assert fall == 0.0
     assert np.array_equal(step, np.zeros(2))
+
+
+def test_a_model_that_has_run_away_is_seen_as_the_record_there():
+    """Also where its numbers are still finite, and no record of theirs could be."""
+    record, rig, _, _ = hidden(None, "multisine", 4, 4.0)
+    own = fitter(record, rig.inertia)
+    shape = np.shape(own.windows.measured)
+    z = np.where(np.arange(shape[0])[:, None] < 3, 1e300, np.asarray(own.windows.measured))
+    z[5] += 1e-4
+    along = model_record(own, Prediction(z, np.zeros((shape[0], 0)), np.zeros((shape[0], 2)))).channels["z"]
+    assert np.array_equal(along[: 3 * shape[1]], record.channels["z"][: 3 * shape[1]])
+    assert along[5 * shape[1] : 6 * shape[1]] == pytest.approx(record.channels["z"][5 * shape[1] : 6 * shape[1]] + 1e-4)
 
 
 def test_what_it_promises_of_a_weak_law_comes_true():

@@ -85,6 +85,7 @@ def model_record(builder: ModelBuilder, predicted: Prediction) -> Record:
     for name, values in (*shown, ("x", predicted.input[:, : builder.windows.samples])):
         if name in record.channels and np.shape(values) == seen.shape and not (name == "x" and builder.windows.by_force):
             values, own = np.asarray(values)[seen][: record.samples], record.channels[name]
-            # A trajectory that has run away says nothing of where the link was.
-            channels[name] = np.concatenate([np.where(np.isfinite(values), values, own[: values.size]), own[values.size :]])
+            # What has run away, further from the measured motion than that ever goes, says nothing of where the link was.
+            told = np.abs(values - own[: values.size]) <= np.ptp(own)
+            channels[name] = np.concatenate([np.where(told, values, own[: values.size]), own[values.size :]])
     return record.replace(**channels)

@@ -88,7 +88,8 @@ def nrmse(measured: np.ndarray, predicted: np.ndarray) -> float:
     Both arrays have the shape (N,) and the channel's unit. NaN for a channel that never moves.
     """
     spread = float(np.std(measured))
-    return float(np.sqrt(np.mean((measured - predicted) ** 2))) / spread if spread > 0.0 else float("nan")
+    with np.errstate(over="ignore"):  # of a trajectory that ran away
+        return float(np.sqrt(np.mean((measured - predicted) ** 2))) / spread if spread > 0.0 else float("nan")
 
 
 def percent(share: float) -> str:
@@ -192,7 +193,8 @@ def _summarise(problem: Problem, found: Unknowns, predicted: Any, layout: Layout
     w = problem.windows
     motion, base, tie = (np.asarray(r) for r in kept_residuals(problem, found, predicted))
     at_rest = _spline_residual(w)
-    energy = np.sum(motion**2, axis=1) + np.sum(base**2 - at_rest**2, axis=1) + np.sum(tie**2, axis=1)
+    with np.errstate(over="ignore"):  # of a trajectory that ran away
+        energy = np.sum(motion**2, axis=1) + np.sum(base**2 - at_rest**2, axis=1) + np.sum(tie**2, axis=1)
     present = np.sum(np.asarray(w.weight) > 0.0, axis=1)
 
     first, count = layout.first[record], layout.windows[record]
