@@ -3,6 +3,7 @@ searches on records of another program."""
 
 import json
 from dataclasses import replace
+from types import SimpleNamespace
 
 import jax
 import jax.numpy as jnp
@@ -15,6 +16,7 @@ from jaxbacklash.fitting.fit import prepare
 from jaxbacklash.fitting.setup import first_guess, make_problem
 from jaxbacklash.parameters import values, with_values
 from jaxbacklash.regression.motor_form import MotorForm
+from jaxbacklash.residuals import Findings
 from jaxbacklash.residuals.at_motor import as_pushed, missing_at_motor
 from jaxbacklash.shooting.multiple_shooting import shoot
 from jaxbacklash.simulation import as_record
@@ -77,6 +79,13 @@ def test_what_is_missing_at_the_motor_is_told_apart_from_noise(seed):
     assert found.evident
     assert found.by_direction > 0.9
     assert 0.2 * friction < found.rms < friction
+    assert np.std(found.torque - found.goes) < 0.4 * np.std(found.torque)
+    # The picture shows that torque, not the link's, which lacks none.
+    here = Findings(("",), (), SimpleNamespace(record=np.zeros(1, int)), None, 9.0, 9.0, found)
+    _, stretch = jb.plot.missing_torque(here)
+    drawn = {line.get_label(): line.get_ydata() for line in stretch.get_lines()}
+    assert np.isin(drawn["missing torque"], found.torque).all()
+    assert "as a function of the motor's direction" in drawn
 
 
 @pytest.mark.parametrize("limited", [False, True])

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from ..effects.learned import UNITS
 from ..errors import BadInput
 from ..residuals import Findings, Latent, Surface
+from ..residuals.at_motor import MOSTLY
 from ..residuals.surface import LABELS
 from .drawing import Drawn, Where, empty, picture
 from .failures import misfit_and_torque, missing_torque_curve, missing_torque_in_time, missing_torque_surface
@@ -45,7 +48,8 @@ def where_it_fails(found: Findings, *, ax: Where = None) -> Drawn:
 def missing_torque(found: Findings | Latent, *, record: int = 0, ax: Where = None) -> Drawn:
     """The torque that would have to be added to the model for it to follow the record, with its 95 % band.
 
-    Of `Findings` it is the torque beside which its best coordinates stand, with the part that goes with them.
+    Of `Findings` it is the torque beside which its best coordinates stand, with the part that goes with them; where one is
+    missing at the motor of a drive and none on its link, that at the motor.
 
     Parameters
     ----------
@@ -72,6 +76,11 @@ def missing_torque(found: Findings | Latent, *, record: int = 0, ax: Where = Non
     here = latent.record == record
     if not here.any():
         raise BadInput(f"record {record}: the missing torque was found in {int(latent.record.max()) + 1}, counted from 0")
+    motor = found.at_motor if isinstance(found, Findings) else None
+    if surface is None and motor is not None and motor.t is not None:
+        goes, name = (motor.goes, "the motor's direction") if motor.by_direction > MOSTLY else (None, "")
+        band = np.full(motor.t.size, motor.noise)
+        return missing_torque_in_time(motor.t, motor.torque, band, unit=motor.unit, explained=goes, name=name, ax=ax)
     if surface is None:
         return missing_torque_in_time(latent.t[here], latent.torque[here], latent.stderr[here], unit=latent.unit, ax=ax)
     names = " and ".join(LABELS[name] for name in surface.coordinates)

@@ -44,7 +44,8 @@ def failure_panels(found: Findings) -> list[Panel]:
     """The pictures of what is missing; of a model that explains the record, the torque in time alone."""
     surface, missing = found.surface, svg_of(plot.missing_torque, found)
     if surface is None:
-        return [Panel("Missing torque", found.sentences[0], missing, "missing")]
+        title = "Missing torque" if found.adequate else "Missing torque at the motor"
+        return [Panel(title, found.sentences[0], missing, "missing")]
     return [
         Panel(
             "Where the model fails",

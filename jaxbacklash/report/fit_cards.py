@@ -125,7 +125,8 @@ def of_findings(found: Findings) -> Card:
         for one in found.dependences[:MOST]
     ]
     if found.surface is None:
-        return Card("Where the model fails: nowhere", found.sentences, (), (Picture("missing_torque", (found,)),))
+        where = "nowhere" if found.adequate else "at the motor"
+        return Card(f"Where the model fails: {where}", found.sentences, (), (Picture("missing_torque", (found,)),))
     asked = grid(["what the missing torque may depend on", "of it", "strength", "chance"], rows)
     pictures = Picture("where_it_fails", (found,)), Picture("torque_over", (found,))
     return Card("Where the model fails", found.sentences, (asked,), pictures)

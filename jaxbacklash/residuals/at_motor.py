@@ -8,7 +8,7 @@ would leave of it. `where_it_fails` tells both.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import equinox as eqx
 import numpy as np
@@ -30,12 +30,16 @@ MOSTLY = 0.5
 @dataclass(frozen=True)
 class AtMotor:
     """A torque missing at the motor's port: ``rms`` and what ``noise`` would leave of it [``unit``]; ``by_direction``, the share
-    of its variance that goes with the direction in which the motor turns."""
+    of its variance that goes with the direction in which the motor turns; where it was averaged over a tenth of a second, the
+    ``torque`` (R,) at times ``t`` (R,) [s] and the part of it that ``goes`` (R,) with the direction."""
 
     rms: float
     noise: float
     by_direction: float
     unit: str = "N m"
+    t: np.ndarray | None = field(default=None, repr=False, compare=False)
+    torque: np.ndarray | None = field(default=None, repr=False, compare=False)
+    goes: np.ndarray | None = field(default=None, repr=False, compare=False)
 
     @property
     def evident(self) -> bool:
@@ -74,6 +78,7 @@ def missing_at_motor(system: System, free: tuple[str, ...], record: Record, unit
     apart = direction - by @ np.linalg.lstsq(by, direction, rcond=None)[0]
     energy = float(rest @ rest)
     share = float(rest @ apart) ** 2 / max(float(apart @ apart) * energy, 1e-300)
+    goes = apart * float(rest @ apart) / max(float(apart @ apart), 1e-300)
     whole = float(form.average(np.ones(record.samples))[0])
     of_link = float(system.inertia) / float(motor.ratio) * channel_noise(record, "link")
     counts = channel_noise(record, "motor")
@@ -83,7 +88,8 @@ def missing_at_motor(system: System, free: tuple[str, ...], record: Record, unit
     else:
         of_torque = torque_noise(record) * form.loudness(0)
     noise = np.hypot(of_torque, np.hypot(of_link, of_motor) * form.loudness(2))
-    return AtMotor(float(np.sqrt(energy / rest.size)) / whole, float(noise) / whole, share, unit)
+    told = form.average(record.t) / whole, rest / whole, goes / whole
+    return AtMotor(float(np.sqrt(energy / rest.size)) / whole, float(noise) / whole, share, unit, *told)
 
 
 def as_pushed(system: System, free: Iterable[str], record: Record) -> tuple[System, tuple[str, ...], Record]:
