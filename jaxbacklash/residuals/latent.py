@@ -204,7 +204,8 @@ def _at_motor(system: System, free: tuple[str, ...], record: Record, unit: str) 
     size = BEGIN * float(np.std(record.channels["torque"]))
     seen = weight > 0.0
     for _ in range(ROUNDS):
-        at = eqx.tree_at(lambda p: p.windows.input_weight, problem, np.where(seen, np.minimum(1.0 / size, weight), 0.0))
+        loose = np.where(seen, np.minimum(1.0 / max(size, 1e-300), weight), 0.0)
+        at = eqx.tree_at(lambda p: p.windows.input_weight, problem, loose)
         found = continued(at, unknowns)
         unknowns = found.minimum.value
         changed = np.where(seen, np.asarray(unknowns.coefficients) - np.asarray(windows.input), 0.0)
