@@ -14,7 +14,7 @@ from jaxbacklash.plot.drawing import on_page, svg_of, to_png_data_uri, to_svg
 from jaxbacklash.plot.models import error_by_stage
 from jaxbacklash.report.facts import _sentence
 from jaxbacklash.report.html import Panel, render, write_report
-from jaxbacklash.report.summary import candidate_tables
+from jaxbacklash.report.summary import candidate_tables, summarise
 
 from .report_samples import HOSTILE, all_figures, motion, result, stages
 
@@ -223,3 +223,12 @@ def test_page_in_a_browser(page, tmp_path):
 def test_a_sentence_begins_large_and_a_symbol_stays_small():
     assert _sentence("a torque is missing") == "A torque is missing."
     assert _sentence("z does not repeat with the drive's cycles!") == "z does not repeat with the drive's cycles!"
+
+
+def test_a_card_gives_no_error_that_would_hold_only_if_the_model_were_right():
+    sure = result()
+    doubted = sure | {"intervals_note": "only if the model is right: it is not, see the verdict"}
+    tiles = [{tile["label"]: tile["value"] for tile in summarise(one)["tiles"]} for one in (sure, doubted)]
+    assert "±" in tiles[0]["total play b"]
+    assert "±" not in "".join(tiles[1].values())
+    assert summarise(doubted)["no_intervals"]

@@ -50,7 +50,7 @@ def summarise(result: Entry) -> dict[str, Any]:
         "next": str(result.get("next") or ""),
         "tiles": chaos_tiles(result)
         if "lyapunov" in result
-        else _tiles([best_method(result)] if result.get("command") == "skeleton" else stages, record),
+        else _tiles([best_method(result)] if result.get("command") == "skeleton" else _told(stages, result), record),
         "skeletons": skeleton_tables(result),
         "parameters": parameter_rows(stages, str(result.get("intervals_note") or "")),
         "no_intervals": _no_intervals(result),
@@ -68,6 +68,15 @@ def summarise(result: Entry) -> dict[str, Any]:
         "command_line": str(result.get("command_line") or ""),
         "version": str(result.get("version") or ""),
     }
+
+
+def _told(stages: list[Entry], result: Entry) -> list[Entry]:
+    """The stages, the values of the last without errors where these would hold only if the model were right: a card has no room
+    to say so."""
+    if not stages or not result.get("intervals_note"):
+        return stages
+    bare = {name: {**entry, "stderr": None} for name, entry in parameters_of(stages[-1]).items()}
+    return [*stages[:-1], {**stages[-1], "parameters": bare}]
 
 
 def verdict_words(entry: Entry, doubted: bool = False) -> dict[str, str]:
