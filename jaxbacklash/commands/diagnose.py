@@ -19,7 +19,7 @@ from ..fitting.result import causes_text
 from ..fitting.setup import add_effects
 from ..model_file import dump_model
 from ..records.force import between
-from ..records.not_taken import require_motor
+from ..records.not_taken import require_encoders
 from ..report.refine_result import candidates_json
 from ..report.result import as_json as result_of
 from ..residuals import Findings, where_it_fails
@@ -46,7 +46,7 @@ def run(
     if starts < 1:
         raise BadInput(f"--starts {starts}: wanted one or more")
     record = reading.record(path)
-    require_motor([record], "diagnose")
+    require_encoders([record], "diagnose", ("motor",))
     folder = out_folder(out)
     system = model_of_file(model, inertia)
     if system is not None:

@@ -104,14 +104,10 @@ def glimpses(builder: ModelBuilder, model: FittedModel, own: WeakForm, keep: int
     left = rows - np.linalg.lstsq(by.T, rows.T, rcond=None)[0].T @ by
     told = np.sum(left**2, axis=1) > ALIKE * np.sum(rows**2, axis=1)
     edges = panel_edges(builder)
-    at_edges = [np.interp(edges, own.motion.t, row) for row in left[told]]
-    problem, unknowns = as_it_ended(builder, model)
-    found = [
-        Glimpse(word, float(size[0]) * torque, gain, len(words))
-        for word, torque, (size, gain) in zip(
-            np.array(words)[told], at_edges, column_gains(problem, unknowns, len(model.free), np.stack(at_edges))
-        )
-    ]
+    at_edges = np.array([np.interp(edges, own.motion.t, row) for row in left[told]])
+    gains = column_gains(*as_it_ended(builder, model), len(model.free), at_edges)
+    named = zip(np.array(words)[told], at_edges, gains)
+    found = [Glimpse(str(word), float(size[0]) * torque, gain, len(words)) for word, torque, (size, gain) in named]
     if (sine := likeliest_sine(builder, model)) is not None:
         course = sine.amplitude * np.sin(sine.frequency * edges + sine.phase)
         found.append(Glimpse(f"a rhythm of its own of {sine.frequency / (2.0 * np.pi):.3g} Hz", course, sine.gain, sine.tried))

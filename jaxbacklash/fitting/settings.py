@@ -52,7 +52,8 @@ windows are one trajectory."""
 FINER = 10.0
 """Factor by which the weight of the ties grows from one fit to the next."""
 FALLEN = 3.0
-"""Fall of the evidence below its highest from which on tighter ties are not tried [ln L]: a likelihood of a twentieth."""
+"""Fall of the evidence below its highest from which on tighter ties are not tried, and below that of a model that a fit contains
+from which on the fit is begun again [ln L]: a likelihood of a twentieth."""
 BETWEEN, LAST = 15, 40
 """Steps of a fit with ties looser than `SHARP`, and of one with those or tighter ones; also of a score without a law that
 remembers, and with one."""
@@ -106,7 +107,7 @@ FURTHER = 0.01
 MOST_LAWS = 4
 """Laws in a model at most: more small ones stand for one that the catalogue does not have."""
 MOST_FITTED = 3
-"""Candidates beside one model that are fitted at most."""
+"""Candidates beside one model that are fitted at most, and other models that are tried with one law more."""
 MOST_STEPS = 600
 """Steps of a search over all its fits: then it ends with the best it has. Counted and not timed, so that every run ends alike."""
 CLEAR_SHARE = 0.1
@@ -119,8 +120,8 @@ MEASURING = 4.0
 """Minus twice the log prior odds of a fault of the measuring chain against a law of the joint [2 ln L]: more than fits with dry
 friction scatter by where both do the same to a record."""
 SEEN = 10.0
-"""What the weak form shows of a torque by chance where nothing is missing, at most: fall of its sum of squares, in units of its
-rows' variance. What shows less is neither tuned nor held against the trajectory."""
+"""What the weak form, or a score test, shows of a torque by chance where nothing is missing, at most: fall of its sum of squares,
+in units of the noise. What shows less is neither tuned nor held against the trajectory."""
 ALIKE = 0.01
 """Share of a torque, squared, that the model cannot make up for by itself: with less it is no torque of its own."""
 

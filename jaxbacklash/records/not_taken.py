@@ -9,41 +9,24 @@ from ..errors import BadInput
 from .record import Record
 
 
-def require_relative(records: Iterable[Record], what: str) -> None:
-    """Refuse records of a drive of which motor or link has no encoder.
+def require_encoders(records: Iterable[Record], what: str, encoders: tuple[str, ...] = ("motor", "link")) -> None:
+    """Refuse records of a drive with one encoder that lack one of some encoders.
 
     Parameters
     ----------
     records : to be worked on
-    what : which work it is that does not take one, as in "skeleton"
+    what : which work it is that does not take them, as in "skeleton"
+    encoders : that it needs, ``"motor"``, ``"link"`` or both
 
     Raises
     ------
     BadInput
         Naming the record and what takes it.
     """
-    _refuse((record for record in records if record.blind), what, "both encoders")
-
-
-def require_motor(records: Iterable[Record], what: str) -> None:
-    """Refuse records of a drive of which the link alone has an encoder.
-
-    Parameters
-    ----------
-    records : to be worked on
-    what : which work it is that does not take one, as in "diagnose"
-
-    Raises
-    ------
-    BadInput
-        Naming the record and what takes it.
-    """
-    _refuse((record for record in records if record.blind and "motor" not in record.channels), what, "the motor's encoder")
-
-
-def _refuse(records: Iterable[Record], what: str, wanted: str) -> None:
+    wanted = f"the {encoders[0]}'s encoder" if len(encoders) == 1 else "both encoders"
     for record in records:
-        raise BadInput(
-            f"{record.path or 'the record'}: is of a drive with the encoder of the {record.observed_name} alone, which "
-            f"{what} does not take so far; wanted {wanted}, or jaxbacklash fit, with laws by --effects"
-        )
+        if record.blind and not set(encoders) <= set(record.channels):
+            raise BadInput(
+                f"{record.path or 'the record'}: is of a drive with the encoder of the {record.observed_name} alone, which "
+                f"{what} does not take so far; wanted {wanted}, or jaxbacklash fit, with laws by --effects"
+            )

@@ -31,7 +31,7 @@ from ..parameters import unit_text, values, with_values
 from ..pointwise import along
 from ..precision import require_double_precision
 from ..records import Record
-from ..records.not_taken import require_motor
+from ..records.not_taken import require_encoders
 from ..shooting.multiple_shooting import Blocks, Trajectory
 from ..shooting.problem import Problem, Unknowns
 from ..showing import Shown
@@ -163,7 +163,7 @@ def missing_torque(fit: Fit, *, hold: bool = False) -> Latent:
     >>> print(jb.missing_torque(fit))
     A torque of ... N m rms is missing, known to ...
     """
-    require_motor(fit.records, "missing_torque")
+    require_encoders(fit.records, "missing_torque", ("motor",))
     if fit.system.motor is not None and fit.records[0].blind:
         unit = unit_text("N m", translational=fit.translational, per_inertia=fit.per_inertia)
         if hold:

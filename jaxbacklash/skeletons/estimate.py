@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import BadInput
 from ..parameters import unit_text
 from ..records import Record
-from ..records.not_taken import require_relative
+from ..records.not_taken import require_encoders
 from ..signals import choose_intervals, fit_spline, highest_frequency
 from . import masks
 from .fundamental import Fundamental, hilbert_fundamental, wavelet_fundamental
@@ -124,7 +124,7 @@ def _read(record: Record, inertia: float | None, gravity: float, load: np.ndarra
             f"{record.path or 'the record'}: has the base motion x and the transmitted torque T but no motion of the link; "
             "wanted z or y for a skeleton"
         )
-    require_relative([record], "skeleton")
+    require_encoders([record], "skeleton")
     record = record.on_its_base()
     channels, zero = record.channels, np.zeros(record.samples)
     x, force = channels.get("x", zero), channels.get("F", zero)
